@@ -17,11 +17,13 @@ const HELP: &str = "cargo xtask NAME
   package        every crate that is not private can be packaged for publication
   consumer       a crate outside of the workspace links the library, builds it without optimization and steps 100 strands
   fuzz [SECONDS] every fuzz target, so long each (default 60), two at a time
-  window         draws the pictures of docs/window.md anew, on a desktop; Sintel's from ../shared/data
+  window         draws the pictures of docs/window.md, on a desktop; Sintel's from ../shared/data
   monkey [MINUTES] random presses in the window, so long (default 10)
-  golden         writes the golden pictures anew (look at them before you commit)
-  meshes         makes the meshes of the example scenes anew (draw the scenes that show them, and look)
-  pictures [NAME] draws the pictures of the book anew, all or those whose name contains NAME (look at them too); needs no build where
+  golden         writes the golden pictures (look at them before you commit)
+  meshes         makes the meshes of the example scenes (draw the scenes that show them, and look)
+  parameters     writes what the book states of each parameter from its definition: unit, range, default, condition, lists; `test`
+                 checks that it is up to date
+  pictures [NAME] draws the pictures of the book, all or those whose name contains NAME (look at them too); needs no build where
                  HAIRSPRING names the program
   ci             lint, package, consumer, fuzz (half a minute each), test: what CI runs";
 
@@ -57,6 +59,18 @@ fn main() {
         }
         ["golden"] => {
             run::cargo(&["test", "--release", "-p", "hairspring-view"], &[("HAIRSPRING_GOLDEN", "write")])
+        }
+        ["parameters"] => {
+            let test = [
+                "test",
+                "--release",
+                "-p",
+                "hairspring-io",
+                "--test",
+                "scenes",
+                "book_states_the_definitions",
+            ];
+            run::cargo(&test, &[("HAIRSPRING_BOOK", "write")])
         }
         ["pictures"] => pictures::draw(""),
         ["pictures", part] => pictures::draw(part),

@@ -1,7 +1,15 @@
 //! Fields of list entries: colliders, tools, wind sources, charged bodies, keys. Like `parameter` for values
-//! that a scene has once, this gives each field's label, unit and description.
+//! that a scene has once, this gives each field's label and control. Unit and description are those of its
+//! definition.
 
-/// The type of a field.
+use crate::{
+    key::Key,
+    parameter::{describe, unit_of},
+};
+use hairspring::settings;
+use hairspring_io::scene::parameters;
+
+/// The control of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// One number, or three.
@@ -32,89 +40,73 @@ pub struct Field {
     pub name: &'static str,
     /// Label in the panel.
     pub label: &'static str,
-    /// Unit, empty for plain numbers.
-    pub unit: &'static str,
-    /// Whether the field is optional, so that its default applies without it.
-    pub optional: bool,
-    /// Type.
+    /// Control.
     pub kind: Kind,
-    /// Tooltip.
-    pub tip: &'static str,
-}
-
-macro_rules! optional {
-    (given) => {
-        false
-    };
-    (maybe) => {
-        true
-    };
+    /// What the window does with it, for the tooltip; empty for most.
+    note: &'static str,
 }
 
 macro_rules! fields {
-    ($($need:ident $name:literal, $label:literal, $unit:literal, $kind:expr, $tip:literal;)*) => {
-        &[$(Field { name: $name, label: $label, unit: $unit, optional: optional!($need), kind: $kind, tip: $tip },)*]
+    ($($name:literal, $label:literal, $kind:expr $(, $note:expr)?;)*) => {
+        &[$(Field { name: $name, label: $label, kind: $kind, note: concat!("" $(, $note)?) },)*]
     };
 }
 
 /// Keys of a tool, which are lists of four numbers.
-const WAY: Kind = Kind::Keys(Keys { columns: &["time", "position"], plain: true });
-/// Keys of a charged body.
-const PLACES: Kind = Kind::Keys(Keys { columns: &["time", "center"], plain: false });
+const PATH: Kind = Kind::Keys(Keys { columns: &["time", "position"], plain: true });
 /// Keys of the body.
 const MOTION: Kind = Kind::Keys(Keys { columns: &["time", "position", "rotation"], plain: false });
-/// Corners of a hull.
-const CORNERS: Kind = Kind::Keys(Keys { columns: &["point"], plain: true });
+/// Points of a hull.
+const POINTS: Kind = Kind::Keys(Keys { columns: &["point"], plain: true });
 
-/// All fields. A name has the same meaning in every list, except `path`: see [`of`].
+/// All fields, in the order of the panel. A name has the same control in every list, except `path`: see
+/// [`of`].
 const ALL: &[Field] = fields! {
-    given "center", "Middle", "m", Kind::Number, "Its middle. It can be dragged in the picture.";
-    given "a", "One end", "m", Kind::Number, "One end of its axis. It can be dragged in the picture.";
-    given "b", "Other end", "m", Kind::Number, "The other end of its axis. It can be dragged in the picture.";
-    given "point", "A point of it", "m", Kind::Number, "Any point that lies on it.";
-    given "normal", "Normal", "", Kind::Number, "Which way is out of what is solid. Any length above 0.";
-    given "axis", "Axis", "", Kind::Number, "Its direction. Any length above 0. Pull the arrow's tip in the picture.";
-    given "size", "Edges", "m", Kind::Number, "Length of its edges.";
-    maybe "rotation", "Rotation", "°", Kind::Number, "How it is turned: about X, then Y, then Z.";
-    given "radius", "Radius", "m", Kind::Number, "How far it reaches from its middle or axis, above 0.";
-    given "speed", "Speed", "m/s", Kind::Number, "Of the air, at the mouth or the radius. Below 0: the other way round.";
-    maybe "spread", "Spread", "°", Kind::Number, "Angle from the jet's axis to its edge, 0 to 80.";
-    maybe "gust", "Gust amount", "", Kind::Number, "How much gusts add and take, as a share, 0 to 1.";
-    maybe "gust_rate", "Gust rate", "Hz", Kind::Number, "How often they come.";
-    given "charge", "Charge", "C", Kind::Number, "Static charge. Hair of the other sign is pulled, of the same sign pushed. A rubbed balloon: -1e-7.";
-    maybe "solid", "Solid", "", Kind::Switch, "Whether hair collides with the ball.";
-    maybe "joint", "Carried by", "", Kind::Joint, "The body's joint that carries it.";
-    maybe "pull", "Pull", "Hz", Kind::Number, "How fast a lone point would swing about its place, 0 to 1000.";
-    maybe "damping", "Damping", "×", Kind::Number, "Damping of that pull over the critical: 1 does not swing.";
-    maybe "grip", "Grip", "1/s", Kind::Number, "How fast hair takes on the comb's velocity across itself, 0 to 10000.";
-    maybe "friction", "Drag along", "1/s", Kind::Number, "How fast hair takes on the comb's velocity along itself, 0 to the grip.";
-    given "reach", "Reach", "m", Kind::Number, "Strands that come nearer to the tie than this are gathered.";
-    maybe "gather", "Gathers in", "s", Kind::Number, "How long gathering takes.";
-    maybe "from", "Takes hold at", "s", Kind::Number, "When it takes hold.";
-    maybe "until", "Lets go at", "s", Kind::Maybe(2.0), "When it lets go; left out: never.";
-    maybe "path", "Way", "", WAY, "How far it has moved at a time; straight in between, at rest before and after.";
-    maybe "thickness", "Thickness", "m", Kind::Number, "How far hair stays from it, on both sides. It begins the scene anew.";
-    maybe "keys", "Keys", "", MOTION, "Where the whole body is at a time: it goes from key to key as a rigid piece, and rests at each.";
-    maybe "points", "Corners", "", CORNERS, "Points whose convex hull it is.";
-    maybe "time", "Time", "s", Kind::Number, "When. Each key is later than the one before.";
-    maybe "position", "Position", "m", Kind::Number, "How far it has gone from where it was.";
-    maybe "pivot", "Turns about", "m", Kind::Number, "The point of the body that its motion turns it about.";
+    "center", "Center", Kind::Number, "Its handle can be dragged in the picture.";
+    "a", "End A", Kind::Number, "Its handle can be dragged in the picture.";
+    "b", "End B", Kind::Number, "Its handle can be dragged in the picture.";
+    "point", "Point", Kind::Number;
+    "normal", "Normal", Kind::Number;
+    "axis", "Axis", Kind::Number, "The tip of its arrow can be dragged in the picture.";
+    "size", "Size", Kind::Number;
+    "rotation", "Rotation", Kind::Number;
+    "radius", "Radius", Kind::Number;
+    "speed", "Speed", Kind::Number;
+    "spread", "Spread", Kind::Number;
+    "gust", "Gust amount", Kind::Number;
+    "gust_rate", "Gust rate", Kind::Number;
+    "charge", "Charge", Kind::Number;
+    "solid", "Solid", Kind::Switch;
+    "joint", "Joint", Kind::Joint;
+    "pull", "Pull", Kind::Number;
+    "damping", "Damping", Kind::Number;
+    "grip", "Grip", Kind::Number;
+    "friction", "Friction", Kind::Number;
+    "reach", "Reach", Kind::Number;
+    "gather", "Gather time", Kind::Number;
+    "from", "Start time", Kind::Number;
+    "until", "End time", Kind::Maybe(2.0);
+    "path", "Path", PATH;
+    "thickness", "Thickness", Kind::Number, "A change restarts the scene.";
+    "keys", "Keys", MOTION, "A change restarts the scene.";
+    "points", "Points", POINTS;
+    "time", "Time", Kind::Number;
+    "position", "Offset", Kind::Number;
+    "pivot", "Pivot", Kind::Number, "A change restarts the scene.";
 };
 
-/// The path of a charged body. It gives absolute positions instead of displacements.
-const CHARGED_WAY: Field = Field {
+/// The path of a charged body, whose keys are tables of absolute positions.
+const CHARGED_PATH: Field = Field {
     name: "path",
-    label: "Way",
-    unit: "",
-    optional: true,
-    kind: PLACES,
-    tip: "Where its middle is later; straight on between. Times are above 0.",
+    label: "Path",
+    kind: Kind::Keys(Keys { columns: &["time", "center"], plain: false }),
+    note: "",
 };
 
 /// Returns the field `name` of an entry of `list`, if it exists.
 pub fn of(list: &str, name: &str) -> Option<&'static Field> {
     match (list, name) {
-        ("charged", "path") => Some(&CHARGED_WAY),
+        ("charged", "path") => Some(&CHARGED_PATH),
         _ => ALL.iter().find(|field| field.name == name),
     }
 }
@@ -124,18 +116,61 @@ pub fn place(name: &str) -> usize {
     ALL.iter().position(|field| field.name == name).unwrap_or(ALL.len())
 }
 
+/// The definition of the field at `key`, such as `collider[0].shape.sphere.radius`.
+fn definition(key: &Key) -> Option<&'static settings::Parameter> {
+    let name = key.full_name();
+    // The joint of a sheet is that of any mesh.
+    parameters::parameter(if name == "sheet.joint" { "collision.joint" } else { &name })
+}
+
+/// Unit of the field at `key`, empty for plain numbers.
+pub fn unit(key: &Key) -> &'static str {
+    definition(key).map_or("", unit_of)
+}
+
+/// Tooltip of a field at `key`: description, accepted values and default.
+pub fn tip(field: &Field, key: &Key) -> String {
+    let Some(definition) = definition(key) else { return field.label.into() };
+    let text = describe(definition, definition.default_or_required().trim_matches('`'));
+    [&text, field.note].join("\n").trim_end().to_owned()
+}
+
+/// Unit and tooltip of a column of the list of keys at `key`. Keys that are plain lists have no definitions of
+/// their own for their numbers: times and offsets are those of the keys of a motion, and points have the unit
+/// of the list.
+pub fn column(key: &Key, column: &str) -> (&'static str, String) {
+    let motion = Key::top("clip").field("keys").field(column);
+    let definition =
+        definition(&key.field(column)).or_else(|| definition(&motion)).or_else(|| definition(key));
+    definition.map_or(("", String::new()), |definition| (unit_of(definition), definition.summary()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn fields_are_there_once_and_say_what_they_do() {
+    fn every_field_is_there_once_and_has_a_definition() {
         for (k, field) in ALL.iter().enumerate() {
-            assert!(field.tip.ends_with('.') && !field.label.is_empty(), "{}", field.name);
+            assert!(!field.label.is_empty(), "{}", field.name);
             assert!(ALL[..k].iter().all(|other| other.name != field.name), "{} is there twice", field.name);
+            let suffix = format!(".{}", field.name);
+            assert!(parameters::parameters().any(|(name, _)| name.ends_with(&suffix)), "{}", field.name);
             if let Kind::Keys(keys) = field.kind {
                 assert!(keys.columns.iter().all(|c| of("", c).is_some()), "{}", field.name);
             }
         }
+    }
+
+    #[test]
+    fn units_and_descriptions_are_those_of_the_definitions() {
+        let key = |text: &str| text.parse::<Key>().unwrap();
+        assert_eq!(unit(&key("hand[0].tool.grab.pull")), "Hz");
+        assert_eq!(unit(&key("collider[1].shape.box.rotation")), "°");
+        assert_eq!(column(&key("hand[0].path"), "position").0, "m");
+        assert_eq!(column(&key("charged[0].path"), "time").0, "s");
+        assert_eq!(column(&key("collider[0].shape.hull.points"), "point").0, "m");
+        let tip = tip(of("hand", "from").unwrap(), &key("hand[0].from"));
+        assert_eq!(tip, "Time at which the hand starts to act.\n\n0 or more [s]; default 0.0");
     }
 }

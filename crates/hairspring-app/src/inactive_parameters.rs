@@ -1,158 +1,85 @@
 //! Parameters without effect in the current scene, because a feature is off or another value replaces them.
 //! The panel grays them out and shows the reason.
 
-use crate::{document::Document, key::Key, parameter::Parameter};
+use crate::{
+    document::Document,
+    key::Key,
+    parameter::{self, Parameter},
+};
+use hairspring::settings::When;
+use hairspring_io::scene::parameters;
 
-/// A scene and the selection that the rules are evaluated for.
-struct Asked<'a> {
+/// A scene and the selection that conditions are evaluated for.
+struct Selection<'a> {
     document: &'a Document,
     /// Keys of the selected groom, and of the material of the selected group.
     groom: Key,
     material: Key,
 }
 
-impl Asked<'_> {
-    fn value(&self, key: &Key) -> Option<&toml::Value> {
+impl Selection<'_> {
+    /// The effective value of a parameter or table, named as in the book.
+    fn value(&self, name: &str) -> Option<&toml::Value> {
+        let key = match name.split_once('.') {
+            Some(("groom", name)) => self.groom.field(name),
+            Some(("material", name)) => self.material.field(name),
+            _ => Key::default().field(name),
+        };
         key.look_up(self.document.effective())
     }
 
-    fn scene(&self, name: &str) -> Option<&toml::Value> {
-        self.value(&Key::default().field(name))
+    fn holds(&self, when: &When) -> bool {
+        let word = |name: &str| self.value(name).and_then(toml::Value::as_str).unwrap_or_default();
+        match *when {
+            When::Always => true,
+            When::On(name) | When::Above0(name) | When::Not0(name) | When::Has(name) => {
+                self.value(name).is_some_and(is_set)
+            }
+            When::Given(name) => self.value(name).is_some(),
+            When::NotGiven(name) | When::HasNot(name) => self.value(name).is_none(),
+            When::Is(name, words) => words.contains(&word(name)),
+            When::IsNot(name, words) => !words.contains(&word(name)),
+            When::All(parts) => parts.iter().all(|part| self.holds(part)),
+            When::Any(parts) => parts.iter().any(|part| self.holds(part)),
+        }
     }
 
-    fn groom(&self, name: &str) -> Option<&toml::Value> {
-        self.value(&self.groom.field(name))
-    }
-
-    fn material(&self, name: &str) -> Option<&toml::Value> {
-        self.value(&self.material.field(name))
-    }
-
-    fn integrator(&self) -> &str {
-        word(self.scene("solver.integrator"))
-    }
-
-    /// Whether hair bends: follow the leader only keeps lengths.
-    fn bends(&self) -> bool {
-        !["ftl", "dftl"].contains(&self.integrator())
-    }
-
-    /// Whether there is any air motion.
-    fn blows(&self) -> bool {
-        some(self.scene("wind.velocity"))
-            || some(self.scene("turbulence.strength"))
-            || some(self.scene("wind_source"))
+    /// The part of an unmet condition that is unmet, as a phrase.
+    fn unmet(&self, when: &When, label: &dyn Fn(&str) -> String) -> String {
+        match when {
+            When::All(parts) => {
+                let unmet = parts.iter().filter(|part| !self.holds(part));
+                unmet.map(|part| self.unmet(part, label)).collect::<Vec<_>>().join(", and ")
+            }
+            when => when.phrase(label),
+        }
     }
 }
 
-/// Whether a switch is on, a number or one of several is not 0, or a list has entries.
-fn some(value: Option<&toml::Value>) -> bool {
+/// Whether a switch is on, a number is above 0, one of several numbers is not 0, or a list has entries.
+fn is_set(value: &toml::Value) -> bool {
     match value {
-        Some(toml::Value::Boolean(on)) => *on,
-        Some(toml::Value::Integer(n)) => *n != 0,
-        Some(toml::Value::Float(x)) => *x != 0.0,
-        Some(toml::Value::Array(list)) => list.iter().any(|x| some(Some(x))),
-        other => other.is_some(),
+        toml::Value::Boolean(on) => *on,
+        toml::Value::Integer(n) => *n > 0,
+        toml::Value::Float(x) => *x > 0.0,
+        toml::Value::Array(list) => list.iter().any(|x| x.as_float() != Some(0.0)),
+        _ => true,
     }
-}
-
-fn word(value: Option<&toml::Value>) -> &str {
-    value.and_then(toml::Value::as_str).unwrap_or_default()
 }
 
 impl Parameter {
     /// Why a parameter has no effect in this scene, for this groom and group; `None` if it has.
-    pub fn inactive_reason(
-        &self,
-        document: &Document,
-        (groom, group): (usize, usize),
-    ) -> Option<&'static str> {
+    pub fn inactive_reason(&self, document: &Document, (groom, group): (usize, usize)) -> Option<String> {
         let groom = Key::top("groom").place(groom);
-        let asked = Asked { document, material: groom.field("material").place(group), groom };
-        let global_shapes = some(asked.scene("solver.global_shape"));
-        let method = word(asked.scene("volume.method"));
-        let occluded = ["wind_occlusion.body", "wind_occlusion.hair"].map(|name| some(asked.scene(name)));
-        let (counts, why) = match self.name {
-            "motion" => (asked.scene("clip").is_none(), "No effect: the scene has a motion of its own."),
-            "thicken.radius" | "thicken.tip" => {
-                (some(asked.groom("thicken.copies")), "No effect unless \"Copies per strand\" is above 0.")
-            }
-            "effects.curl_length" => {
-                (some(asked.groom("effects.curl_radius")), "No effect unless \"Curl radius\" is above 0.")
-            }
-            "global_shape.pull" => (global_shapes, "No effect while \"Use global shape\" (Solver) is off."),
-            "global_shape.tip" | "global_shape.damping" => (
-                global_shapes && some(asked.material("global_shape.pull")),
-                "No effect unless \"Global shape\" is above 0.",
-            ),
-            "model" | "bend" | "bend_tip" | "damping" | "flatness" | "young" if !asked.bends() => {
-                (false, "No effect: the follow-the-leader integrators (Solver) have no bending.")
-            }
-            "model" => (
-                asked.integrator() != "local-global",
-                "No effect: the local-global integrator (Solver) has its own elastic model.",
-            ),
-            "shear" => (
-                asked.bends()
-                    && asked.integrator() != "local-global"
-                    && word(asked.material("model")) != "curvature",
-                "No effect: only the models rod and springs twist, with an integrator that uses them.",
-            ),
-            "wind.gust" => (some(asked.scene("wind.velocity")), "No effect without wind."),
-            "wind.gust_rate" => (
-                some(asked.scene("wind.velocity")) && some(asked.scene("wind.gust")),
-                "No effect without wind and gusts.",
-            ),
-            "turbulence.size" | "turbulence.octaves" => {
-                (some(asked.scene("turbulence.strength")), "No effect unless \"Turbulence\" is above 0.")
-            }
-            "wind_occlusion.body" | "wind_occlusion.hair" => {
-                (asked.blows(), "No effect unless the air moves: by wind, turbulence or a wind source.")
-            }
-            "wind_occlusion.reach" => (
-                asked.blows() && occluded.contains(&true),
-                "No effect unless the air moves and bodies or hair occlude it.",
-            ),
-            "friction_kinetic" => {
-                (some(asked.material("friction")), "No effect unless \"Friction\" is above 0.")
-            }
-            "charge" => (
-                asked.scene("charged").and_then(toml::Value::as_array).is_some_and(|list| !list.is_empty()),
-                "No effect without a charged body: add one below.",
-            ),
-            "volume.friction" => (method != "off", "No effect while \"Volume method\" is off."),
-            "volume.pressure" => (method == "density", "Only used by the volume method density."),
-            "volume.recovery_rate" => {
-                (method == "incompressible", "Only used by the volume method incompressible.")
-            }
-            "volume.cell" => (
-                method != "off" || occluded[1],
-                "No effect unless \"Volume method\" is on or hair occludes the wind.",
-            ),
-            "neighbours.radius" | "neighbours.friction" | "neighbours.stiction" => {
-                (some(asked.scene("neighbours.on")), "No effect unless \"Strand contacts\" is on.")
-            }
-            "look.root_color" | "look.tip_color" => (
-                asked.groom("look.melanin").is_none(),
-                "No effect while \"Melanin\" is on: it replaces the colors.",
-            ),
-            "look.melanin_redness" => {
-                (asked.groom("look.melanin").is_some(), "No effect unless \"Melanin\" is on.")
-            }
-            "ground.height" | "ground.color" => {
-                (some(asked.scene("ground.on")), "No effect unless \"Ground\" is on.")
-            }
-            "solver.projection_iterations" => (
-                ["backward-euler", "bdf2"].contains(&asked.integrator()),
-                "Only used by backward-euler and bdf2.",
-            ),
-            "solver.quality" => (
-                ["backward-euler", "bdf2", "local-global"].contains(&asked.integrator()),
-                "Only used by backward-euler, bdf2 and local-global.",
-            ),
-            _ => return None,
+        let selection = Selection { document, material: groom.field("material").place(group), groom };
+        let when = self.definition().when;
+        // A parameter is named by its label, and by its group if that is another one.
+        let label = |name: &str| match parameter::ALL.iter().find(|p| p.full_name() == name) {
+            Some(other) if other.group == self.group => format!("\"{}\"", other.label),
+            Some(other) => format!("\"{}\" ({})", other.label, other.group.name()),
+            None => parameters::contents(name).unwrap_or(name).to_owned(),
         };
-        (!counts).then_some(why)
+        (!selection.holds(&when)).then(|| format!("No effect unless {}.", selection.unmet(&when, &label)))
     }
 }
 
@@ -170,7 +97,7 @@ mod tests {
     }
 
     /// Parameters without effect in the built-in scene, and text that activates them.
-    const WOKEN: [(&str, &str); 23] = [
+    const WOKEN: [(&str, &str); 22] = [
         ("effects.curl_length", "[builtin.effects]\ncurl_radius = 0.004\n"),
         ("global_shape.tip", "[material.m]\nglobal_shape = { pull = 2.0 }\n"),
         ("global_shape.damping", "[material.m]\nglobal_shape = { pull = 2.0 }\n"),
@@ -184,7 +111,6 @@ mod tests {
             "[[wind_source]]\nshape.point = { center = [0.2, 1.5, 0.0], radius = 0.05, speed = 2.0 }\n",
         ),
         ("wind_occlusion.reach", "[wind]\nvelocity = [0.0, 0.0, 2.0]\n[wind_occlusion]\nhair = 20.0\n"),
-        ("charge", "[[charged]]\ncenter = [0.0, 1.8, 0.0]\nradius = 0.1\ncharge = 1e-7\n"),
         ("volume.friction", "[volume]\nmethod = \"density\"\n"),
         ("volume.pressure", "[volume]\nmethod = \"density\"\n"),
         ("volume.recovery_rate", "[volume]\nmethod = \"incompressible\"\n"),
@@ -228,6 +154,8 @@ mod tests {
             assert!(!idle(HEAD, name), "{name} counts by default");
             assert!(idle(&format!("{HEAD}{text}"), name), "{name} with {text}");
         }
+        // Charged hair also repels itself.
+        assert!(!idle(HEAD, "charge"), "a charge acts without charged bodies");
         // Values that replace others.
         assert!(idle(&format!("{HEAD}[builtin.look]\nmelanin = 0.5\n"), "look.root_color"));
     }

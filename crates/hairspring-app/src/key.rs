@@ -56,6 +56,15 @@ impl Key {
         Self(steps)
     }
 
+    /// The name of the parameter at this key, as in the book: without indices.
+    pub fn full_name(&self) -> String {
+        let fields = self.0.iter().filter_map(|step| match step {
+            Step::Field(name) => Some(name.as_str()),
+            Step::Place(_) => None,
+        });
+        fields.collect::<Vec<_>>().join(".")
+    }
+
     /// The list at the root of the file and the index in it, if the key is inside such a list.
     pub fn listed(&self) -> Option<(&str, usize)> {
         match &self.0[..] {

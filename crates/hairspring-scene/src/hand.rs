@@ -1,32 +1,41 @@
 //! Hands of a scene: a manipulator with its motion and the time during which it acts.
 
 use glam::Vec3;
-use hairspring::settings::{Check, Validate, check, from_0};
-use hairspring::{forces::Manipulator, math::find_keys};
-use serde::{Deserialize, Serialize};
+use hairspring::{forces::Manipulator, math::find_keys, settings::define_settings};
 
-/// A hand with a manipulator.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Hand {
-    /// The manipulator, in the space of the body's rest pose [m].
-    pub tool: Manipulator,
-    /// Name of the body joint that moves it; `None`: it is fixed in the world.
-    #[serde(default)]
-    pub joint: Option<String>,
-    /// Displacement keys: time [s], then x, y, z [m], in the joint's space. Motion is linear between keys and
-    /// constant before the first and after the last. Times must increase. Empty, the default: no motion.
-    #[serde(default)]
-    pub path: Vec<[f32; 4]>,
-    /// Time at which it starts to act [s], 0 or more. Default 0.
-    #[serde(default)]
-    pub from: f32,
-    /// Time at which it stops [s], after `from`; `None`, the default: never.
-    #[serde(default)]
-    pub until: Option<f32>,
+define_settings! {
+    /// A hand with a manipulator.
+    #[derive(Clone, Debug, PartialEq)]
+    entry struct Hand {
+        /// The manipulator, in the space of the body's rest pose [m].
+        tool: Manipulator, "none", {table};
+        /// Name of the body joint that moves the hand.
+        #[serde(default)]
+        joint: Option<String>, "none", {text "the name of a joint of the body"}, default "fixed in the world";
+        /// Displacement keys: time [s], then x, y, z [m], in the joint's space. Motion is linear between keys and
+        /// constant before the first and after the last.
+        #[serde(default)]
+        path: Vec<[f32; 4]> = Vec::new(), "s, m", {
+            check |hand| hand.path_is_valid() => "finite, with increasing times [s]"
+        };
+        /// Time at which the hand starts to act.
+        #[serde(default)]
+        from: f32 = 0.0, ["s"], {0 or more};
+        /// Time at which the hand stops.
+        #[serde(default)]
+        until: Option<f32>, ["s"], {
+            check |hand| hand.until.is_none_or(|t| t.is_finite() && t > hand.from) => "after `from`"
+        }, default "never";
+    }
 }
 
 impl Hand {
+    /// Returns whether the keys are finite, with increasing times.
+    fn path_is_valid(&self) -> bool {
+        let finite = self.path.iter().flatten().all(|x| x.is_finite());
+        finite && self.path.windows(2).all(|w| w[0][0] < w[1][0])
+    }
+
     /// Creates a hand that does not move and never stops acting.
     pub fn new(tool: Manipulator) -> Self {
         Self { tool, joint: None, path: Vec::new(), from: 0.0, until: None }
@@ -37,20 +46,6 @@ impl Hand {
         let place = |k: usize| Vec3::from_slice(&self.path[k][1..]);
         let way = find_keys(self.path.len(), |k| self.path[k][0], time);
         way.map_or(Vec3::ZERO, |(a, b, share)| place(a).lerp(place(b), share))
-    }
-}
-
-impl Validate for Hand {
-    fn checks(&self) -> Vec<Check> {
-        let finite = self.path.iter().flatten().all(|x| x.is_finite());
-        let path = finite && self.path.windows(2).all(|w| w[0][0] < w[1][0]);
-        let mut checks = vec![
-            check(path, "path", "finite, with increasing times [s]"),
-            check(from_0(self.from), "from", "0 or more [s]"),
-            check(self.until.is_none_or(|t| t.is_finite() && t > self.from), "until", "after `from` [s]"),
-        ];
-        checks.extend(self.tool.checks());
-        checks
     }
 }
 

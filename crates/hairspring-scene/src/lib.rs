@@ -22,7 +22,7 @@ use hairspring::{
     forces::charge::Charged,
     groom::Groom,
     material::Material,
-    settings::{Effects, Neighbours, OutOfRange, Solver, Validate, Volume, Wind},
+    settings::{Effects, Neighbours, OutOfRange, Range, Solver, Validate, Volume, Wind},
 };
 
 /// One hairstyle of a scene, with its settings for simulation and rendering.
@@ -146,16 +146,22 @@ impl Scene {
             parts.push((numbered("charged", k), charged));
         }
         for (k, collider) in self.colliders.iter().enumerate() {
-            parts.push((numbered("collider", k), &collider.shape));
+            parts.push((numbered("collider", k), collider));
         }
         for (k, hand) in self.hands.iter().enumerate() {
             parts.push((numbered("hand", k), hand));
+        }
+        for (k, sheet) in self.sheets.iter().enumerate() {
+            if !Range::Above(0.0).accepts(&sheet.thickness) {
+                let error = OutOfRange { key: "thickness".into(), expected: "above 0 [m]" };
+                return Err(SceneError { place: numbered("sheet", k), error });
+            }
         }
         for (place, part) in parts {
             part.validate().map_err(|error| SceneError { place, error })?;
         }
         if !self.gravity.is_finite() {
-            let error = OutOfRange { key: "gravity", expected: "three finite numbers [m/s²]" };
+            let error = OutOfRange { key: "gravity".into(), expected: "three finite numbers [m/s²]" };
             return Err(SceneError { place: "scene".into(), error });
         }
         Ok(())

@@ -1,73 +1,57 @@
 //! Hair color and shading settings. Rendering is implemented in `hairspring-view`.
 
 use glam::Vec3;
-use hairspring::settings::{Check, Validate, check};
-use serde::{Deserialize, Serialize};
+use hairspring::settings::{When, define_settings};
 
-/// Color and gloss of one groom.
-///
-/// Colors are those of a thick, evenly lit lock of the hair (linear Rec. 709). The renderer converts them to
-/// absorption inside the fiber, which tints highlights, transmitted light and shadow. Alternatively `melanin`
-/// gives the pigment; the colors are then ignored.
-///
-/// # Missing
-/// A separate melanin value for the tip; a fraction of gray hairs among others.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct HairLook {
-    /// Linear RGB at the root, 0 to 1. Default: dark brown.
-    pub root_color: Vec3,
-    /// Linear RGB at the tip, 0 to 1. Default: a lighter brown, as from sun and washing.
-    pub tip_color: Vec3,
-    /// Pigment in the fiber, 0 (none: white) to 1 (black), perceptually even: the amount is −ln(1 − melanin),
-    /// as in the hair shaders of Blender and Unreal. `None`, the default: the colors are used.
-    pub melanin: Option<f32>,
-    /// Fraction of the pigment that is reddish pheomelanin, 0 (only eumelanin: brown) to 1 (red). Default
-    /// 0.3: light brown hair is slightly warm. Only used with `melanin`.
-    pub melanin_redness: f32,
-    /// Dye: linear RGB that white hair would take on, 0 to 1, applied to the melanin or the colors. Default
-    /// white: no dye.
-    pub dye: Vec3,
-    /// Variation of pigment from strand to strand, 0 (none) to 1. Default 0.25: visible only as depth.
-    pub variation: f32,
-    /// Width of the highlights along the strand, 0.1 (oiled) to 1 (matte). Default 0.32: healthy hair
-    /// (Marschner et al. 2003 measured 5° to 10°).
-    pub roughness: f32,
-    /// Tilt of the cuticle scales [degrees], 0 to 10. It separates the white highlight from the colored one.
-    /// Default 3 (Marschner et al. 2003, table 1: 2° to 4°).
-    pub cuticle: f32,
-    /// Strength of the two highlights, 0 to 4. Default 1: dielectric keratin.
-    pub specular: f32,
-    /// Strength of light transmitted through strands from behind, 0 to 4. Default 1.
-    pub backlight: f32,
-    /// Strength of light scattered from strand to strand, 0 to 4. Default 1.
-    pub scatter: f32,
-    /// Strength of shadows from strands, 0 to 4. Default 1: as opaque as they are wide.
-    pub shadow: f32,
-}
+/// The condition under which the two colors have an effect.
+const COLORS: When = When::NotGiven("groom.look.melanin");
 
-impl Default for HairLook {
-    fn default() -> Self {
-        Self {
-            root_color: Vec3::new(0.045, 0.022, 0.011),
-            tip_color: Vec3::new(0.10, 0.05, 0.024),
-            melanin: None,
-            melanin_redness: 0.3,
-            dye: Vec3::ONE,
-            variation: 0.25,
-            roughness: 0.32,
-            cuticle: 3.0,
-            specular: 1.0,
-            backlight: 1.0,
-            scatter: 1.0,
-            shadow: 1.0,
-        }
+define_settings! {
+    /// Color and gloss of one groom.
+    ///
+    /// Colors are those of a thick, evenly lit lock of the hair (linear Rec. 709). The renderer converts them to
+    /// absorption inside the fiber, which tints highlights, transmitted light and shadow. Alternatively `melanin`
+    /// gives the pigment; the colors are then ignored.
+    ///
+    /// # Missing
+    /// A separate melanin value for the tip; a fraction of gray hairs among others.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct HairLook {
+        /// Color of a thick lock of hair at the root. The default is dark brown.
+        root_color: Vec3 = Vec3::new(0.045, 0.022, 0.011), "linear RGB", {color}, when COLORS;
+        /// Color of a thick lock of hair at the tip. The default is a lighter brown, as from sun and washing.
+        tip_color: Vec3 = Vec3::new(0.10, 0.05, 0.024), "linear RGB", {color}, when COLORS;
+        /// Pigment in the fiber, instead of the two colors: 0 is white, 1 is black.
+        ///
+        /// It is perceptually even: the amount is −ln(1 − melanin), as in the hair shaders of Blender and Unreal.
+        melanin: Option<f32> = None, "fraction", {0 to 1}, default "none, the two colors are used";
+        /// Fraction of the pigment that is reddish pheomelanin, 0 (only eumelanin: brown) to 1 (red). The default
+        /// is slightly warm, like light brown hair.
+        melanin_redness: f32 = 0.3, "fraction", {0 to 1}, when When::Given("groom.look.melanin");
+        /// Dye over the melanin or the colors: the color that white hair would take on. White: no dye.
+        dye: Vec3 = Vec3::ONE, "linear RGB", {color};
+        /// Variation of the pigment from strand to strand. The default is visible only as depth.
+        variation: f32 = 0.25, "fraction", {0 to 1};
+        /// Width of the highlights along the strand, from oiled to matte. The default is healthy hair (Marschner
+        /// et al. 2003 measured 5° to 10°).
+        roughness: f32 = 0.32, "fraction", {0.1 to 1};
+        /// Tilt of the cuticle scales, which separates the white highlight from the colored one. Measured values
+        /// are 2° to 4° (Marschner et al. 2003, table 1).
+        cuticle: f32 = 3.0, ["degrees"], {0 to 10};
+        /// Strength of the two highlights. The default is dielectric keratin.
+        specular: f32 = 1.0, "factor", {0 to 4};
+        /// Strength of the light transmitted through strands from behind.
+        backlight: f32 = 1.0, "factor", {0 to 4};
+        /// Strength of the light scattered from strand to strand.
+        scatter: f32 = 1.0, "factor", {0 to 4};
+        /// Strength of the shadows from strands. With the default, strands are as opaque as they are wide.
+        shadow: f32 = 1.0, "factor", {0 to 4};
     }
 }
 
 /// Natural hair colors.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 pub enum HairColor {
     /// Nearly all eumelanin.
     Black,
@@ -100,25 +84,5 @@ impl From<HairColor> for HairLook {
             HairColor::Gray => ([0.36, 0.355, 0.36], [0.46, 0.455, 0.45], 0.6),
         };
         Self { root_color: Vec3::from(root), tip_color: Vec3::from(tip), variation, ..Self::default() }
-    }
-}
-
-impl Validate for HairLook {
-    fn checks(&self) -> Vec<Check> {
-        let color = crate::is_color;
-        vec![
-            check(color(self.root_color), "root_color", "three numbers from 0 to 1"),
-            check(color(self.tip_color), "tip_color", "three numbers from 0 to 1"),
-            check(self.melanin.is_none_or(|m| (0.0..=1.0).contains(&m)), "melanin", "0 to 1"),
-            check((0.0..=1.0).contains(&self.melanin_redness), "melanin_redness", "0 to 1"),
-            check(color(self.dye), "dye", "three numbers from 0 to 1"),
-            check((0.0..=1.0).contains(&self.variation), "variation", "0 to 1"),
-            check((0.1..=1.0).contains(&self.roughness), "roughness", "0.1 to 1"),
-            check((0.0..=10.0).contains(&self.cuticle), "cuticle", "0 to 10 [degrees]"),
-            check((0.0..=4.0).contains(&self.specular), "specular", "0 to 4"),
-            check((0.0..=4.0).contains(&self.backlight), "backlight", "0 to 4"),
-            check((0.0..=4.0).contains(&self.scatter), "scatter", "0 to 4"),
-            check((0.0..=4.0).contains(&self.shadow), "shadow", "0 to 4"),
-        ]
     }
 }

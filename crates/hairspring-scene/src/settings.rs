@@ -3,9 +3,8 @@
 use glam::{Mat3, Vec3};
 use hairspring::{
     collide::{ColliderShape, Hull},
-    settings::{Check, Validate, above_0, check},
+    settings::{Check, Validate, check, define_settings},
 };
-use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, sync::Arc};
 
 /// Selects the simulated strands of a groom; the others follow them.
@@ -20,66 +19,68 @@ pub enum Guides {
     All,
 }
 
-/// A simple shape that hair collides with.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Collider {
-    /// Name of the body joint that moves it; `None`: joint 0, or fixed without a body.
-    #[serde(default)]
-    pub joint: Option<String>,
-    /// The shape, in the space of the body's rest pose [m].
-    pub shape: Shape,
+define_settings! {
+    /// A simple shape that hair collides with.
+    #[derive(Clone, Debug, PartialEq)]
+    entry struct Collider {
+        /// Name of the body joint that moves the collider.
+        #[serde(default)]
+        joint: Option<String>, "none", {text "the name of a joint of the body"}, default "the body's first";
+        /// The shape, in the space of the body's rest pose [m].
+        shape: Shape, "none", {table};
+    }
 }
 
-/// The shapes of a [`Collider`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Shape {
-    /// A sphere.
-    Sphere {
-        /// Center [m].
-        center: Vec3,
-        /// Radius [m], above 0.
-        radius: f32,
-    },
-    /// All points nearer than `radius` to the segment from `a` to `b`.
-    Capsule {
-        /// One end of the axis [m].
-        a: Vec3,
-        /// The other end [m].
-        b: Vec3,
-        /// Radius [m], above 0.
-        radius: f32,
-    },
-    /// A box.
-    Box {
-        /// Center [m].
-        center: Vec3,
-        /// Lengths of its edges [m], above 0.
-        size: Vec3,
-        /// Rotation about X, then Y, then Z [degrees]. Default 0.
-        #[serde(default)]
-        rotation: Vec3,
-    },
-    /// A half-space, on the side of a plane that `normal` points away from: a floor, a wall, a slope.
-    Plane {
-        /// A point on the plane [m].
-        point: Vec3,
-        /// Direction out of the solid, of any length above 0.
-        normal: Vec3,
-    },
-    /// The convex hull of points: a shoulder, a stone, a brush.
-    Hull {
-        /// Points of the hull [m], four or more. Default: the vertices of `file`.
-        #[serde(default)]
-        points: Vec<Vec3>,
-        /// A mesh file. The scene reader replaces `points` with its vertices; this crate does not open it.
-        #[serde(default)]
-        file: Option<PathBuf>,
-        /// Meters per unit of `file` [m], above 0. Default: given by the format, or guessed and reported.
-        #[serde(default)]
-        scale: Option<f32>,
-    },
+define_settings! {
+    /// The shapes of a [`Collider`].
+    #[derive(Clone, Debug, PartialEq)]
+    entry enum Shape {
+        /// A sphere.
+        Sphere = "sphere" {
+            /// Center of the sphere.
+            center: Vec3, ["m"], {vector};
+            /// Radius of the sphere.
+            radius: f32, ["m"], {above 0};
+        }
+        /// All points nearer than `radius` to the segment from `a` to `b`.
+        Capsule = "capsule" {
+            /// One end of the axis.
+            a: Vec3, ["m"], {vector};
+            /// The other end of the axis.
+            b: Vec3, ["m"], {vector};
+            /// Radius around the axis.
+            radius: f32, ["m"], {above 0};
+        }
+        /// A box.
+        Box = "box" {
+            /// Center of the box.
+            center: Vec3, ["m"], {vector};
+            /// Lengths of the edges of the box.
+            size: Vec3, ["m"], {vector above 0};
+            /// Rotation of the box about X, then Y, then Z.
+            #[serde(default)]
+            rotation: Vec3 = Vec3::ZERO, ["degrees"], {vector};
+        }
+        /// A half-space, on the side of a plane that `normal` points away from: a floor, a wall, a slope.
+        Plane = "plane" {
+            /// A point on the plane.
+            point: Vec3, ["m"], {vector};
+            /// Direction out of the solid.
+            normal: Vec3, "direction", {direction};
+        }
+        /// The convex hull of points: a shoulder, a stone, a brush.
+        Hull = "hull" {
+            /// Points of the hull.
+            #[serde(default)]
+            points: Vec<Vec3>, ["m"], {text "four or more that span a volume"}, default "the vertices of `file`";
+            /// A mesh file. The scene reader replaces `points` with its vertices; this crate does not open it.
+            #[serde(default)]
+            file: Option<PathBuf>, "none", {text "a mesh: `.glb`, `.gltf`, `.obj` or `.tfxmesh`"}, default "the `points`";
+            /// Size of one unit of `file`.
+            #[serde(default)]
+            scale: Option<f32>, ["m"], {above 0}, default "from the format, or guessed and reported";
+        }
+    }
 }
 
 impl Shape {
@@ -101,24 +102,16 @@ impl Shape {
     }
 }
 
-/// Describes a valid shape, for error messages.
-const SOUND: &str = "finite, with a radius or edges above 0 [m], a normal that is not 0, or `points` that span a volume or a `file` of them";
-
 impl Validate for Shape {
-    /// The shape is finite and has an inside. For a plane only its own extent counts, not its half-space.
+    /// The fields are in range, and the shape has an inside. For a plane only its own extent counts, not its
+    /// half-space.
     fn checks(&self) -> Vec<Check> {
-        let sound = match *self {
-            Shape::Hull { ref points, ref file, scale } => {
-                let given = if file.is_some() { points.is_empty() } else { self.obstacle().is_some() };
-                given && points.iter().all(|p| p.is_finite()) && above_0(scale)
-            }
-            Shape::Sphere { center, radius } => center.is_finite() && above_0(Some(radius)),
-            Shape::Capsule { a, b, radius } => a.is_finite() && b.is_finite() && above_0(Some(radius)),
-            Shape::Box { center, size, rotation } => {
-                center.is_finite() && size.is_finite() && size.min_element() > 0.0 && rotation.is_finite()
-            }
-            Shape::Plane { point, normal } => point.is_finite() && normal.try_normalize().is_some(),
-        };
-        vec![check(sound, "shape", SOUND)]
+        let mut checks = self.range_checks();
+        if let Self::Hull { points, file, .. } = self {
+            let finite = points.iter().all(|p| p.is_finite());
+            let spans = if file.is_some() { points.is_empty() } else { finite && self.obstacle().is_some() };
+            checks.push(check(spans, "hull", "given `points` that span a volume, or a `file` of them"));
+        }
+        checks
     }
 }

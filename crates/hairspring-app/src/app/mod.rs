@@ -197,7 +197,10 @@ impl eframe::App for App {
             self.say(why.to_string(), true);
         }
         if self.session.is_dead() && self.message.is_none() {
-            self.say("the simulation ended by an error of its own; save, and open the scene anew", true);
+            self.say(
+                "the simulation stopped because of an internal error; save, and open the scene again",
+                true,
+            );
         }
         if let Some(snapshot) = &snapshot {
             self.history.keep(snapshot);

@@ -156,12 +156,12 @@ impl Pace {
         Self { mean: 0.0, came: Instant::now() }
     }
 
-    /// Counts a picture. `anew` restarts the measurement: use it when the picture does not continue a series.
-    fn tick(&mut self, anew: bool) {
+    /// Counts a picture. `restart` restarts the measurement: use it when the picture does not continue a series.
+    fn tick(&mut self, restart: bool) {
         let since = self.came.elapsed().as_secs_f32();
         self.came = Instant::now();
         // The measurement restarts after a pause.
-        self.mean = if anew || since > 1.0 { 0.0 } else { smooth(self.mean, since) };
+        self.mean = if restart || since > 1.0 { 0.0 } else { smooth(self.mean, since) };
     }
 
     /// The rate as text that is appended to other text.

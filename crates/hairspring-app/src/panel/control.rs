@@ -22,7 +22,9 @@ pub fn control(
 ) -> Option<egui::Response> {
     let number = now.and_then(as_number);
     let name = parameter.label;
-    match parameter.kind {
+    match parameter.kind() {
+        // A bounded number has become one with a range.
+        Kind::Bounded => None,
         Kind::Number { min, max, log } => {
             let mut value = number.unwrap_or(min);
             let slider = Slider::from_get_set(min..=max, |new| {
@@ -33,7 +35,7 @@ pub fn control(
                 value
             });
             let slider = slider.logarithmic(log).clamping(egui::SliderClamping::Never).max_decimals(4);
-            fit(ui, parameter.unit);
+            fit(ui, parameter.unit());
             Some(ui.add(written(slider, parameter)).labelled(ui, name))
         }
         Kind::Maybe { min, max, from, without } => {
@@ -52,13 +54,13 @@ pub fn control(
                 }
                 value
             });
-            fit(ui, parameter.unit);
+            fit(ui, parameter.unit());
             // From 0 on, the slider is linear. Factors have no minimum, so their slider is logarithmic.
             let slider = slider.logarithmic(min > 0.0).max_decimals(4);
             Some(ui.add(written(slider, parameter)).labelled(ui, name))
         }
         Kind::Count { min, max } => {
-            fit(ui, parameter.unit);
+            fit(ui, parameter.unit());
             Some(count(ui, number.unwrap_or(min as f64), (min, max), edit).labelled(ui, name))
         }
         Kind::Guides { max } => {
@@ -78,7 +80,7 @@ pub fn control(
                 });
             let combo = combo.response.labelled(ui, name);
             let Some(value) = number else { return Some(combo) };
-            fit(ui, parameter.unit);
+            fit(ui, parameter.unit());
             Some(count(ui, value, (1, max), edit).labelled(ui, name))
         }
         Kind::Switch => {
@@ -89,13 +91,13 @@ pub fn control(
             }
             Some(response)
         }
-        Kind::Choice(words) => {
-            let chosen = now.and_then(toml::Value::as_str).unwrap_or(words[0]);
+        Kind::Choice => {
+            let chosen = now.and_then(toml::Value::as_str).or(parameter.words().next()).unwrap_or_default();
             let combo =
                 egui::ComboBox::from_id_salt(parameter.name).selected_text(chosen).show_ui(ui, |ui| {
-                    for word in words {
-                        if ui.selectable_label(*word == chosen, *word).clicked() && *word != chosen {
-                            edit(Some((*word).into()));
+                    for word in parameter.words() {
+                        if ui.selectable_label(word == chosen, word).clicked() && word != chosen {
+                            edit(Some(word.into()));
                         }
                     }
                 });
@@ -133,11 +135,11 @@ pub fn control(
             for (axis, x) in ["x", "y", "z"].into_iter().zip(&mut vector) {
                 let drag = DragValue::new(x).speed(reach / 200.0).range(-reach..=reach).max_decimals(2);
                 let drag = drag.custom_formatter(plain);
-                let drag = ui.add(drag).on_hover_text(format!("{axis} [{}]", parameter.unit));
+                let drag = ui.add(drag).on_hover_text(format!("{axis} [{}]", parameter.unit()));
                 changed |= drag.changed();
             }
-            if !parameter.unit.is_empty() {
-                ui.weak(parameter.unit);
+            if !parameter.unit().is_empty() {
+                ui.weak(parameter.unit());
             }
             if parameter.name == "wind.velocity" {
                 changed |= super::wind::pad(ui, &mut vector, reach as f32);
@@ -155,11 +157,13 @@ pub fn control(
                 let weight = DragValue::new(x).speed(0.02).range(0.01..=100.0).max_decimals(2);
                 changed |= ui.add(weight).labelled(ui, name).changed();
             }
-            if profile.len() < 8 && ui.small_button("+").on_hover_text("One more towards the tip").clicked() {
+            if profile.len() < 8 && ui.small_button("+").on_hover_text("Add a weight at the tip").clicked() {
                 profile.push(profile.last().copied().unwrap_or(1.0));
                 changed = true;
             }
-            if profile.len() > 1 && ui.small_button("-").on_hover_text("One less").clicked() {
+            if profile.len() > 1
+                && ui.small_button("-").on_hover_text("Remove the weight at the tip").clicked()
+            {
                 profile.pop();
                 changed = true;
             }
@@ -200,8 +204,8 @@ fn fit(ui: &mut Ui, unit: &str) {
 
 /// A slider with its unit. Very large and very small numbers are shown as powers of ten.
 fn written<'a>(slider: Slider<'a>, parameter: &Parameter) -> Slider<'a> {
-    let unit = parameter.unit;
-    let far = match parameter.kind {
+    let unit = parameter.unit();
+    let far = match parameter.kind() {
         Kind::Number { min, max, .. } | Kind::Maybe { min, max, .. } => {
             max >= 1e5 || max.abs().max(min.abs()) < 1e-2
         }

@@ -2,7 +2,7 @@
 //! removed.
 
 use crate::{
-    field::{Field, Keys, of},
+    field::{self, Field, Keys, of},
     key::Key,
     session::Action,
 };
@@ -116,7 +116,7 @@ pub fn show(
         let cell = |ui: &mut Ui, (column, at): (&'static str, usize), actions: &mut Vec<Action>| {
             let mut own = row[at..at + Keys::width(column)].to_vec();
             let range = if column == "time" { between(&rows, k) } else { (f64::MIN, f64::MAX) };
-            if !edited(ui, (field, column), &mut own, range, slow) {
+            if !edited(ui, (key, column), &mut own, range, slow) {
                 return;
             }
             actions.push(if keys.plain {
@@ -131,12 +131,12 @@ pub fn show(
             ui.horizontal(|ui| {
                 ui.label(format!("{}", k + 1));
                 first_line.iter().for_each(|column| cell(ui, *column, actions));
-                if ui.small_button("+").on_hover_text("A key after this one").clicked() {
+                if ui.small_button("+").on_hover_text("Adds a key after this one").clicked() {
                     let mut rows = rows.clone();
                     rows.insert(k + 1, keys.after(&rows, k));
                     actions.push(all(&rows));
                 }
-                if ui.small_button("-").on_hover_text("Takes this key out").clicked() {
+                if ui.small_button("-").on_hover_text("Removes this key").clicked() {
                     let mut rows = rows.clone();
                     rows.remove(k);
                     let left = !rows.is_empty();
@@ -152,7 +152,7 @@ pub fn show(
             }
         });
     }
-    if rows.is_empty() && ui.small_button("Add a key").on_hover_text(field.tip).clicked() {
+    if rows.is_empty() && ui.small_button("Add a key").on_hover_text(field::tip(field, key)).clicked() {
         actions.push(all(&[first.to_vec()]));
     }
 }
@@ -167,12 +167,12 @@ fn between(rows: &[Vec<f64>], k: usize) -> (f64, f64) {
 /// Shows the values of a column. Returns whether they changed.
 fn edited(
     ui: &mut Ui,
-    (field, column): (&Field, &str),
+    (key, column): (&Key, &str),
     numbers: &mut [f64],
     (low, high): (f64, f64),
     slow: bool,
 ) -> bool {
-    let (unit, tip) = of("", column).map_or(("", field.tip), |f| (f.unit, f.tip));
+    let (unit, tip) = field::column(key, column);
     let axes = ["x", "y", "z"];
     let mut changed = false;
     for (axis, x) in numbers.iter_mut().enumerate() {

@@ -4,7 +4,7 @@ use super::control::{VALUE, as_number, control};
 use crate::{
     edit,
     key::Key,
-    parameter::{self, Group, Kind, Parameter},
+    parameter::{self, Group, Kind, Parameter, describe},
     session::{Action, Session},
 };
 use eframe::egui::{self, RichText, Ui};
@@ -30,7 +30,7 @@ pub fn show(
     choose(ui, session, actions);
     ui.horizontal(|ui| {
         if session.is_reading() {
-            ui.add(egui::Spinner::new().size(14.0)).on_hover_text("The scene is made anew");
+            ui.add(egui::Spinner::new().size(14.0)).on_hover_text("The scene is being reloaded");
         }
         ui.add(egui::TextEdit::singleline(filter).hint_text("Find a parameter").desired_width(f32::INFINITY));
     });
@@ -41,7 +41,7 @@ pub fn show(
         for group in Group::ALL {
             let found = |p: &&Parameter| {
                 sought.is_empty()
-                    || [p.label, p.name, p.tip, group.name()]
+                    || [p.label, p.name, group.name(), &p.definition().summary()]
                         .iter()
                         .any(|t| t.to_lowercase().contains(&sought))
             };
@@ -79,19 +79,19 @@ pub fn show(
                 });
         }
         if none {
-            ui.weak("Nothing is called so.");
+            ui.weak("No parameter has this name.");
         }
     });
 }
 
 /// Label of the button that copies the window's camera into the scene.
-const TAKE_VIEW: &str = "Take what is seen here";
+const TAKE_VIEW: &str = "Use the current view";
 
 /// Copies the window's camera into the scene.
 fn take_view(ui: &mut Ui, camera: Option<Camera>, actions: &mut Vec<Action>) {
     let Some(camera) = camera else { return };
     let button = ui.small_button(TAKE_VIEW);
-    if button.on_hover_text("The scene is opened and rendered from where the window looks now.").clicked() {
+    if button.on_hover_text("Sets the scene's camera to the window's current view.").clicked() {
         let key = Key::top("camera");
         // Rounds to a tenth of a millimeter, which is sufficient.
         let tidy = |x: f32| (f64::from(x) * 1e4).round() / 1e4;
@@ -109,7 +109,7 @@ fn take_view(ui: &mut Ui, camera: Option<Camera>, actions: &mut Vec<Action>) {
 fn lists(group: Group) -> &'static [&'static str] {
     match group {
         Group::Motion => &["Keys"],
-        Group::Air => &["Sources of wind", "Charged bodies"],
+        Group::Air => &["Wind sources", "Charged bodies"],
         Group::Collision => &["Colliders", "Sheets", "Hands"],
         Group::Camera => &[TAKE_VIEW],
         _ => &[],
@@ -153,7 +153,7 @@ fn choose(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 fn has_place(session: &Session, parameter: &Parameter) -> bool {
     let (groom, group) = session.chosen();
     let (key, effective) = (parameter.key(groom, group), session.edited().effective());
-    let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor { .. });
+    let maybe = matches!(parameter.kind(), Kind::Maybe { .. } | Kind::MaybeColor { .. });
     key.look_up(effective).is_some() || (maybe && key.parent().look_up(effective).is_some())
 }
 
@@ -177,7 +177,7 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
         ui.horizontal(|ui| {
             let name = RichText::new(parameter.label);
             let name = if changed { name.strong() } else { name };
-            let tip = tip(parameter, idle, key.look_up(document.defaults()));
+            let tip = tip(parameter, idle.as_deref(), key.look_up(document.defaults()));
             let left = egui::Layout::left_to_right(egui::Align::Center);
             ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
                 ui.set_min_width(LABEL);
@@ -220,34 +220,21 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
     });
 }
 
-/// The tooltip: description, accepted values and default.
+/// The tooltip: description, accepted values, default and name.
 fn tip(parameter: &Parameter, idle: Option<&str>, default: Option<&toml::Value>) -> String {
-    let unit = if parameter.unit.is_empty() { String::new() } else { format!(" {}", parameter.unit) };
-    let range = match parameter.kind {
-        Kind::Number { min, max, .. } | Kind::Maybe { min, max, .. } => {
-            format!("{} to {}{unit}", short(min), short(max))
-        }
-        Kind::Count { min, max } => format!("{min} to {max}"),
-        Kind::Guides { max } => format!("1 to {max}, or a word"),
-        Kind::Switch => "on or off".into(),
-        Kind::Choice(words) => words.join(", "),
-        Kind::Color | Kind::MaybeColor { .. } => "red, green, blue, 0 to 1 each".into(),
-        Kind::Vector { reach } => format!("{} to {}{unit} each", short(-reach), short(reach)),
-        Kind::Profile => "numbers above 0".into(),
-    };
     let default = default.map_or("none".into(), |value| match value {
         toml::Value::Boolean(on) => (if *on { "on" } else { "off" }).into(),
         toml::Value::Array(list) => {
             let numbers: Vec<_> = list.iter().filter_map(as_number).map(short).collect();
-            format!("{}{unit}", numbers.join(", "))
+            numbers.join(", ")
         }
         value => match (as_number(value), value.as_str()) {
-            (Some(x), _) => format!("{}{unit}", short(x)),
+            (Some(x), _) => short(x),
             (None, word) => word.unwrap_or_default().into(),
         },
     });
     let first = idle.map(|why| format!("{why}\n\n")).unwrap_or_default();
-    format!("{first}{}\n\n{range}; default {default}\n{}", parameter.tip, parameter.name)
+    format!("{first}{}\n{}", describe(parameter.definition(), &default), parameter.name)
 }
 
 /// Formats a number compactly.

@@ -30,7 +30,7 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
         }
         if session.length().is_some() {
             let mut repeat = session.repeats();
-            if ui.checkbox(&mut repeat, "Repeat").on_hover_text("Begin anew at the motion's end").changed() {
+            if ui.checkbox(&mut repeat, "Repeat").on_hover_text("Restart at the end of the motion").changed() {
                 actions.push(Action::Repeat(repeat));
             }
         }

@@ -1,29 +1,23 @@
 //! Range checks for the values of a scene file: not finite, or outside the documented range of the field.
 
 use super::{
-    air,
-    file::{BodyFile, KeyFile, SceneFile},
+    air::{self, lines},
+    file::{BodyFile, BuiltinFile, ClipFile, KeyFile, PropFile, SceneFile},
+    groom_file::{GroomFile, Placement},
     props,
-    sentence::{line_at, line_of_key},
+    sentence::{line_at, line_of_key, line_of_setting},
 };
 use crate::Problem;
 use glam::Vec3;
-use hairspring::settings::{Validate, above_0, from_0};
-use hairspring_scene::{Guides, is_color};
-
-/// A rule of this reader: whether it holds, the key that it is about, and what is expected.
-pub(super) type Check = (bool, &'static str, &'static str);
-
-pub(super) fn finite(v: Vec3) -> bool {
-    v.is_finite()
-}
+use hairspring::settings::{Check, Validate, check, with_prefix};
+use hairspring_scene::Guides;
 
 /// Reports the first check that fails, at the line of its key from line `from` on.
 pub(super) fn first_failure(text: &str, from: usize, checks: &[Check]) -> Result<(), Problem> {
-    match checks.iter().find(|(holds, ..)| !holds) {
+    match checks.iter().find(|check| !check.holds) {
         None => Ok(()),
-        Some((_, key, expected)) => {
-            let line = line_of_key(text, from, key).unwrap_or(from);
+        Some(Check { key, expected, .. }) => {
+            let line = line_of_setting(text, from, key).unwrap_or(from);
             Err(Problem::line(line, format!("`{key}` must be {expected}")))
         }
     }
@@ -31,8 +25,7 @@ pub(super) fn first_failure(text: &str, from: usize, checks: &[Check]) -> Result
 
 /// Reports the first value of `settings` outside of its range, at the line of its key from line `from` on.
 pub(super) fn in_range(text: &str, from: usize, settings: &impl Validate) -> Result<(), Problem> {
-    let checks: Vec<Check> = settings.checks().iter().map(|c| (c.holds, c.key, c.expected)).collect();
-    first_failure(text, from, &checks)
+    first_failure(text, from, &settings.checks())
 }
 
 /// Checks all settings except the materials.
@@ -41,22 +34,22 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     if scene.groom.is_empty() && scene.builtin.is_none() {
         return Err(Problem::whole("the scene has no [[groom]]: name one with `file = …`"));
     }
-    first_failure(text, 1, &[(finite(scene.gravity), "gravity", "three finite numbers [m/s²]")])?;
+    first_failure(text, 1, &[SceneFile::check("gravity", &scene.gravity)])?;
     for body in scene.body.iter().chain(&scene.collision) {
         body_ranges(text, body)?;
-        let bare = (body.thickness.is_none(), "thickness", "omitted except in [[sheet]]");
+        let bare = check(body.thickness.is_none(), "thickness", "omitted except in [[sheet]]");
         first_failure(text, line_at(text, body.file.span().start), &[bare])?;
     }
     for sheet in &scene.sheet {
         body_ranges(text, sheet)?;
-        let thick = (above_0(sheet.thickness), "thickness", "above 0 [m]");
+        let thick = BodyFile::check("thickness", &sheet.thickness);
         first_failure(text, line_at(text, sheet.file.span().start), &[thick])?;
     }
     if let Some(builtin) = &scene.builtin {
-        let strands = builtin.strands.as_ref().is_none_or(|n| (1..=10_000_000).contains(n.get_ref()));
+        let strands = builtin.strands.as_ref().map(|n| *n.get_ref());
         let checks = [
-            (strands, "strands", "1 to 10000000"),
-            (builtin.guides != Some(Guides::FromGroom), "guides", "a number above 0 or \"all\""),
+            BuiltinFile::check("strands", &strands),
+            check(builtin.guides != Some(Guides::FromGroom), "guides", "a number above 0 or \"all\""),
         ];
         first_failure(text, section("[builtin]"), &checks)?;
         if scene.body.is_some() || scene.collision.is_some() {
@@ -70,21 +63,21 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         let keys = &clip.keys;
         let [ordered, of_numbers] = way(keys);
         let checks = [
-            (keys.is_empty() || clip.file.is_none(), "keys", "omitted if there is a `file`"),
+            check(keys.is_empty() || clip.file.is_none(), "keys", "omitted if there is a `file`"),
             ordered,
             of_numbers,
-            (above_0(clip.scale), "scale", "above 0 [m per unit]"),
-            (clip.pivot.is_none_or(finite), "pivot", "three finite numbers [m]"),
-            (clip.facing.is_none_or(f32::is_finite), "facing", "a finite number [degrees]"),
-            (
+            ClipFile::check("scale", &clip.scale),
+            ClipFile::check("pivot", &clip.pivot),
+            ClipFile::check("facing", &clip.facing),
+            check(
                 clip.pivot.is_none() || clip.joint.is_some() || !keys.is_empty(),
                 "pivot",
                 "omitted without `joint` or `keys`",
             ),
-            (clip.rest_frame.is_none() || clip.joint.is_some(), "rest_frame", "omitted without `joint`"),
-            (clip.travel.is_none() || clip.joint.is_some(), "travel", "omitted without `joint`"),
-            (clip.facing.is_none() || clip.joint.is_some(), "facing", "omitted without `joint`"),
-            (
+            check(clip.rest_frame.is_none() || clip.joint.is_some(), "rest_frame", "omitted without `joint`"),
+            check(clip.travel.is_none() || clip.joint.is_some(), "travel", "omitted without `joint`"),
+            check(clip.facing.is_none() || clip.joint.is_some(), "facing", "omitted without `joint`"),
+            check(
                 clip.joint.is_none() || clip.file.is_some(),
                 "joint",
                 "given with a `file`, the motion that has the joint",
@@ -95,36 +88,24 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     props::ranges(text, scene)?;
     for groom in &scene.groom {
         let t = &groom.transform;
+        let not_0 = t.scale.is_finite() && t.scale.abs().min_element() > 0.0;
         let checks = [
-            (above_0(groom.scale), "scale", "above 0 [m per unit]"),
-            (finite(t.position), "position", "three finite numbers [m]"),
-            (finite(t.rotation), "rotation", "three finite numbers [degrees]"),
-            (finite(t.scale) && t.scale.abs().min_element() > 0.0, "scale", "finite and not 0"),
+            GroomFile::check("scale", &groom.scale),
+            Placement::check("position", &t.position),
+            Placement::check("rotation", &t.rotation),
+            Check { holds: not_0, ..Placement::check("scale", &t.scale) },
         ];
         let from = line_at(text, groom.start());
         first_failure(text, from, &checks)?;
         in_range(text, from, &groom.look)?;
         in_range(text, from, &groom.effects)?;
-        let thicken = &groom.thicken;
-        let thickened = [
-            (thicken.copies <= 1_000, "copies", "0 to 1000"),
-            (from_0(thicken.radius), "radius", "0 or more [m]"),
-            (from_0(thicken.tip), "tip", "0 or more"),
-        ];
-        first_failure(text, line_at(text, groom.start()), &thickened)?;
+        in_range(text, from, &groom.thicken)?;
         if let Some(grow) = &groom.grow {
-            let growth = grow.get_ref().growth();
-            let grown = [
-                ((1..=10_000_000).contains(&growth.strands), "strands", "1 to 10000000"),
-                ((3..=256).contains(&growth.points), "points", "3 to 256"),
-                (above_0(Some(growth.length)), "length", "above 0 [m]"),
-                ((0.0..=1.0).contains(&growth.spread), "spread", "0 to 1"),
-                ((0.0..=1.0).contains(&growth.fall), "fall", "0 to 1"),
-            ];
             let from = line_at(text, grow.span().start);
-            first_failure(text, from, &grown)?;
-            if let Some(Err(error)) = grow.get_ref().inside.as_ref().map(Validate::validate) {
-                first_failure(text, from, &[(false, "inside", error.expected)])?;
+            in_range(text, from, &grow.get_ref().growth())?;
+            if let Some(shape) = &grow.get_ref().inside {
+                let checks: Vec<Check> = with_prefix("inside", shape.checks()).collect();
+                first_failure(text, from, &checks)?;
             }
         }
         if groom.file.is_some() == groom.grow.is_some() {
@@ -133,8 +114,8 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         }
     }
     colored_once(text, scene)?;
-    for collider in &scene.collider {
-        in_range(text, section("[[collider]]"), &collider.shape)?;
+    for (collider, line) in scene.collider.iter().zip(lines(text, "[[collider]]")) {
+        in_range(text, line, collider)?;
     }
     air::ranges(text, scene)?;
     in_range(text, section("[solver]"), &scene.solver)?;
@@ -144,28 +125,28 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         in_range(text, section("[camera]"), camera)?;
     }
     in_range(text, section("[ground]"), &scene.ground)?;
-    let starts = text.match_indices("[[hand]]").map(|(at, _)| line_at(text, at));
-    for (hand, from) in scene.hand.iter().zip(starts.chain(std::iter::repeat(1))) {
-        in_range(text, from, hand)?;
+    for (hand, line) in scene.hand.iter().zip(lines(text, "[[hand]]")) {
+        in_range(text, line, hand)?;
     }
     Ok(())
 }
 
 /// Checks a motion by keys.
 pub(super) fn way(keys: &[KeyFile]) -> [Check; 2] {
-    let ordered = keys.windows(2).all(|w| w[0].time < w[1].time);
-    let inside = |key: &KeyFile| (0.0..=3600.0).contains(&key.time);
+    let in_order = keys.windows(2).all(|w| w[0].time < w[1].time);
+    let inside = keys.iter().all(|key| KeyFile::check("time", &key.time).holds);
+    let numbers: Vec<[Vec3; 2]> = keys.iter().map(|k| [k.position, k.rotation]).collect();
     [
-        (ordered && keys.iter().all(inside), "keys", "in order of `time`, from 0 to 3600 [s]"),
-        (keys.iter().all(|k| finite(k.position) && finite(k.rotation)), "keys", "of finite numbers"),
+        Check { holds: in_order && inside, ..PropFile::check("keys", &Vec::<f32>::new()) },
+        check(numbers.iter().flatten().all(|v| v.is_finite()), "keys", "of finite numbers"),
     ]
 }
 
 pub(super) fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
     let checks = [
-        (above_0(body.scale), "scale", "above 0 [m per unit]"),
-        (body.color.is_none_or(is_color), "color", "three numbers from 0 to 1"),
-        (body.roughness.is_none_or(|r| (0.0..=1.0).contains(&r)), "roughness", "0 to 1"),
+        BodyFile::check("scale", &body.scale),
+        BodyFile::check("color", &body.color),
+        BodyFile::check("roughness", &body.roughness),
     ];
     first_failure(text, line_at(text, body.file.span().start), &checks)?;
     body.more.iter().try_for_each(|file| body_ranges(text, file))

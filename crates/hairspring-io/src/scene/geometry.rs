@@ -2,7 +2,8 @@
 
 use super::{
     Reader, body, builtin,
-    file::{BodyFile, ClipFile, GroomGeometry, PropFile, SceneFile},
+    file::{BodyFile, ClipFile, PropFile, SceneFile},
+    groom_file::GroomGeometry,
     material,
     props::{beside_props, with_props},
     sentence::unknown,

@@ -2,7 +2,8 @@
 
 use super::{
     Reader,
-    file::{self, FileName, GroomFile},
+    file::{self, FileName},
+    groom_file::GroomFile,
 };
 use crate::{ReadOptions, Result, read_bones, read_groom, tfxbone::RootBones};
 use glam::Affine3A;

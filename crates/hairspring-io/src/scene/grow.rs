@@ -1,6 +1,6 @@
 //! `grow` of a `[[groom]]`: the skin of the body that hair grows on.
 
-use super::{Reader, file::GrowFile, sentence::unknown};
+use super::{Reader, groom_file::GrowFile, sentence::unknown};
 use crate::Result;
 use glam::Vec3;
 use hairspring::{

@@ -2,7 +2,8 @@
 
 use super::{
     check,
-    file::{GroomFile, OneOrMore, SceneFile},
+    file::{OneOrMore, SceneFile},
+    groom_file::GroomFile,
     sentence::{line_at, line_of_key, problem_in_table, unknown},
 };
 use crate::Problem;

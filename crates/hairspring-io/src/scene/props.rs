@@ -5,11 +5,14 @@ use super::{
     Reader,
     air::lines,
     body::join,
-    check::{body_ranges, finite, first_failure, way},
+    check::{body_ranges, first_failure, way},
     file::{KeyFile, PropFile, SceneFile},
 };
 use crate::{Problem, Result};
-use hairspring::body::{Body, Clip, Joint, Trs, combine_clips, keyframe_clip};
+use hairspring::{
+    body::{Body, Clip, Joint, Trs, combine_clips, keyframe_clip},
+    settings::check,
+};
 
 /// Header of a prop's table.
 const HEADER: &str = "[[prop]]";
@@ -27,17 +30,17 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> std::result::Result<(), P
         let alone = scene.prop[..k].iter().all(|other| !other.name.eq_ignore_ascii_case(&prop.name));
         let [ordered, of_numbers] = way(&prop.keys);
         let checks = [
-            (alone && !prop.name.is_empty(), "name", "non-empty and unique"),
+            check(alone && !prop.name.is_empty(), "name", "non-empty and unique"),
             ordered,
             of_numbers,
-            (finite(prop.pivot), "pivot", "three finite numbers [m]"),
+            PropFile::check("pivot", &prop.pivot),
         ];
         first_failure(text, line, &checks)?;
         if let Some(mesh) = &prop.mesh {
             body_ranges(text, mesh)?;
             let bare = [
-                (mesh.thickness.is_none(), "thickness", "omitted except in [[sheet]]"),
-                (mesh.joint.is_none(), "joint", "omitted: the mesh follows its prop"),
+                check(mesh.thickness.is_none(), "thickness", "omitted except in [[sheet]]"),
+                check(mesh.joint.is_none(), "joint", "omitted: the mesh follows its prop"),
             ];
             first_failure(text, line, &bare)?;
         }

@@ -26,6 +26,43 @@ pub(super) fn problem_in_table(text: &str, start: usize, error: &toml::de::Error
     Problem::line(line, reworded(error.message()))
 }
 
+/// The line that sets the setting `path`, such as `shape.fan.radius`, in the table that line `from` belongs to;
+/// if it is in an inline table, the line of that table. Without such a line, the first one after the table.
+pub(super) fn line_of_setting(text: &str, from: usize, path: &str) -> Option<usize> {
+    let lines: Vec<&str> = text.lines().collect();
+    let table = lines.iter().take(from).rev().find_map(|line| header_of(line)).unwrap_or_default();
+    let inside = format!("{table}.");
+    let leaves = |line: &&str| {
+        header_of(line).is_some_and(|name| line.trim_start().starts_with("[[") || !name.starts_with(&inside))
+    };
+    let end = lines.iter().skip(from).position(leaves).map_or(lines.len(), |k| from + k);
+    let own = lines[..end].join("\n");
+    // The key below the header of its own table.
+    let below_header = || {
+        let (parent, key) = path.rsplit_once('.')?;
+        let parent = format!(".{parent}");
+        let opens = |line: &&str| header_of(line).is_some_and(|name| name.ends_with(&parent));
+        let k = lines[..end].iter().skip(from).position(opens)?;
+        line_of_key(&own, from + k + 1, key)
+    };
+    below_header()
+        .or_else(|| prefixes(path).find_map(|path| line_of_key(&own, from, path)))
+        .or_else(|| line_of_key(text, from, path))
+}
+
+/// The name of the table that begins at this line. A line of a list of lists also begins with a bracket, but
+/// then with a number or another bracket.
+fn header_of(line: &str) -> Option<&str> {
+    let name = line.trim_start().strip_prefix('[')?;
+    let name = name.strip_prefix('[').unwrap_or(name).split(']').next()?.trim();
+    name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_').then_some(name)
+}
+
+/// A path, then the paths of the tables around it.
+fn prefixes(path: &str) -> impl Iterator<Item = &str> {
+    std::iter::successors(Some(path), |path| path.rsplit_once('.').map(|(table, _)| table))
+}
+
 /// The first line from `from` on that sets `key`.
 pub(super) fn line_of_key(text: &str, from: usize, key: &str) -> Option<usize> {
     let sets = |line: &str| {

@@ -6,6 +6,7 @@
 //! README leads to a file. Every page is linked from a page other than the summary. Every picture is shown,
 //! and the scenes of the book can be read. The glossary is sorted and names files that exist.
 
+use crate::book::{docs, files, is_a_group, name_of, parameter_pages, read};
 use hairspring::{
     air::{Turbulence, WindOcclusion, WindSource},
     forces::charge::Charged,
@@ -13,101 +14,26 @@ use hairspring::{
     material::Material,
     settings::{Effects, Neighbours, Solver, Volume, Wind},
 };
-use hairspring_io::scene::check_text;
+use hairspring_io::scene::{check_text, parameters as definitions};
 use hairspring_scene::{Camera, Collider, Ground, HairLook, Hand};
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     collections::{BTreeMap, BTreeSet},
     fs,
-    path::{Path, PathBuf},
+    path::PathBuf,
 };
 use toml::{Table, Value};
 
-const FILE: &str = include_str!("../../src/scene/file.rs");
-const SOLVER: &str = include_str!("../../../hairspring/src/settings/solver.rs");
-const COLLIDER: &str = include_str!("../../../hairspring-scene/src/settings.rs");
-const SOURCE: &str = include_str!("../../../hairspring/src/air/source.rs");
-const CHARGE: &str = include_str!("../../../hairspring/src/forces/charge.rs");
-
-/// The prefix of a parameter's name, and the struct (or variant) whose fields follow it.
-const STRUCTS: [(&str, &str, &str); 43] = [
-    ("", FILE, "SceneFile"),
-    ("builtin.", FILE, "BuiltinFile"),
-    ("body.", FILE, "BodyFile"),
-    ("clip.", FILE, "ClipFile"),
-    ("clip.keys.", FILE, "KeyFile"),
-    ("prop.", FILE, "PropFile"),
-    ("groom.", FILE, "GroomFile"),
-    ("groom.grow.", FILE, "GrowFile"),
-    ("groom.transform.", FILE, "Placement"),
-    ("groom.thicken.", include_str!("../../../hairspring/src/groom/thicken.rs"), "Thicken"),
-    ("groom.look.", include_str!("../../../hairspring-scene/src/look.rs"), "HairLook"),
-    ("groom.effects.", include_str!("../../../hairspring/src/settings/effects.rs"), "Effects"),
-    ("material.", include_str!("../../../hairspring/src/material/mod.rs"), "Material"),
-    (
-        "material.global_shape.",
-        include_str!("../../../hairspring/src/material/global_shape.rs"),
-        "GlobalShape",
-    ),
-    ("wind.", include_str!("../../../hairspring/src/settings/wind.rs"), "Wind"),
-    ("wind_source.", SOURCE, "WindSource"),
-    ("wind_source.shape.point.", SOURCE, "Point"),
-    ("wind_source.shape.vortex.", SOURCE, "Vortex"),
-    ("wind_source.shape.fan.", SOURCE, "Fan"),
-    ("turbulence.", include_str!("../../../hairspring/src/air/turbulence.rs"), "Turbulence"),
-    ("wind_occlusion.", include_str!("../../../hairspring/src/air/occlusion.rs"), "WindOcclusion"),
-    ("charged.", CHARGE, "Charged"),
-    ("charged.path.", CHARGE, "Waypoint"),
-    ("collider.", COLLIDER, "Collider"),
-    ("collider.shape.sphere.", COLLIDER, "Sphere"),
-    ("collider.shape.capsule.", COLLIDER, "Capsule"),
-    ("collider.shape.box.", COLLIDER, "Box"),
-    ("collider.shape.plane.", COLLIDER, "Plane"),
-    ("collider.shape.hull.", COLLIDER, "Hull"),
-    ("hand.", include_str!("../../../hairspring-scene/src/hand.rs"), "Hand"),
-    ("hand.tool.grab.", include_str!("../../../hairspring/src/forces/grab.rs"), "Grab"),
-    ("hand.tool.comb.", include_str!("../../../hairspring/src/forces/comb.rs"), "Comb"),
-    ("hand.tool.tie.", include_str!("../../../hairspring/src/forces/tie.rs"), "Tie"),
-    ("solver.", SOLVER, "Solver"),
-    ("volume.", include_str!("../../../hairspring/src/settings/volume.rs"), "Volume"),
-    ("neighbours.", include_str!("../../../hairspring/src/settings/neighbours.rs"), "Neighbours"),
-    ("camera.", include_str!("../../../hairspring-scene/src/camera.rs"), "Camera"),
-    ("ground.", include_str!("../../../hairspring-scene/src/ground.rs"), "Ground"),
-    // Tables that have a page of their own in addition to those of their fields.
-    ("collision.", "", ""),
-    ("sheet.", "", ""),
-    ("charged.path.", "", ""),
-    ("clip.keys.", "", ""),
-    ("prop.mesh.", "", ""),
-];
-
-/// Fields that only the other meshes of a body have, and the names that the book gives them.
-const ELSEWHERE: [(&str, &str); 2] =
-    [("body.joint", "collision.joint"), ("body.thickness", "sheet.thickness")];
-
 #[test]
 fn every_parameter_has_a_page() {
-    let known: BTreeSet<String> = STRUCTS
-        .iter()
-        .flat_map(|(prefix, source, name)| {
-            fields(source, name).into_iter().map(move |f| format!("{prefix}{f}"))
-        })
-        .map(|name| ELSEWHERE.iter().find(|(a, _)| *a == name).map_or(name, |(_, b)| (*b).into()))
-        .collect();
-    let begins = |name: &str| STRUCTS.iter().any(|(prefix, ..)| prefix.starts_with(&format!("{name}.")));
-    let pages = parameters();
+    let said = parameters();
+    let known: BTreeSet<&str> = definitions::parameters().map(|(name, _)| name).collect();
     for name in &known {
-        assert!(pages.contains_key(name) || begins(name), "docs/parameters has no page `{name}`");
+        assert!(said.contains_key(*name), "docs/parameters has no page `{name}`");
     }
-    for name in pages.keys() {
-        let there = known.contains(name) || begins(name) || name == "material.preset";
+    for name in said.keys() {
+        let there = known.contains(name.as_str());
         assert!(there, "docs/parameters has a page `{name}`, which is not a parameter of a scene file");
-    }
-    // A struct that borrows is not read from a file.
-    let structs = FILE.lines().filter_map(|l| l.strip_prefix("pub(super) struct "));
-    for line in structs.filter(|line| !line.contains('<')) {
-        let name = line.trim_end_matches(" {");
-        assert!(STRUCTS.iter().any(|(.., s)| *s == name), "`{name}` of the scene file is missing in STRUCTS");
     }
 }
 
@@ -179,7 +105,7 @@ fn group_pages_list_their_parameters() {
             let text = pages.get(name).unwrap_or_else(|| panic!("{group}: the page `{name}` is missing"));
             // The links of a page are relative to its own folder.
             let [row, text] = [row, text].map(without_links);
-            let mut parts = text.lines().filter(|l| !l.is_empty());
+            let mut parts = text.lines().filter(|l| !l.is_empty() && !l.starts_with("Applies only if "));
             let (unit, rest) =
                 parts.next().unwrap().trim_start_matches("Unit: ").split_once(". Range: ").unwrap();
             let default = rest.split(" Default: ").nth(1).unwrap().trim_end_matches('.');
@@ -259,42 +185,18 @@ fn every_scene_of_the_book_can_be_read() {
     }
 }
 
-/// Names of the fields of a struct or of a variant, as declared in its source.
-fn fields(source: &str, name: &str) -> Vec<String> {
-    if name.is_empty() {
-        return Vec::new();
-    }
-    let is_its =
-        |line: &&str| line.trim() == format!("{name} {{") || line.ends_with(&format!("struct {name} {{"));
-    let start = source.lines().position(|l| is_its(&l)).unwrap_or_else(|| panic!("no `{name}`"));
-    let indent = |line: &str| line.len() - line.trim_start().len();
-    let outer = indent(source.lines().nth(start).unwrap());
-    let inside = source.lines().skip(start + 1).take_while(|l| l.is_empty() || indent(l) > outer);
-    let field = |line: &str| {
-        let name = line.trim().trim_start_matches("pub ").split_once(": ")?.0;
-        name.bytes().all(|b| b.is_ascii_lowercase() || b == b'_').then(|| name.to_owned())
-    };
-    inside.filter(|l| indent(l) == outer + 4).filter_map(field).collect()
-}
-
 /// The text of each parameter's page, `docs/parameters/GROUP/NAME.md`, after its heading.
 fn parameters() -> BTreeMap<String, String> {
     let mut all = BTreeMap::new();
-    let folder = docs().join("parameters");
-    for page in files(&folder, "md").iter().filter(|page| page.parent() != Some(&folder)) {
-        let name = page.file_name().unwrap().to_str().unwrap().trim_end_matches(".md");
-        let text = read(page);
+    for page in parameter_pages() {
+        let name = name_of(&page);
+        let text = read(&page);
         let text = text.strip_prefix(&format!("# `{name}`\n"));
         let text = text.unwrap_or_else(|| panic!("{}: wrong heading", page.display()));
         let before = all.insert(name.to_owned(), text.to_owned());
         assert!(before.is_none(), "{name} has two pages");
     }
     all
-}
-
-/// Whether this page of `docs/parameters` is the page of a group.
-fn is_a_group(page: &Path) -> bool {
-    page.parent() == Some(&docs().join("parameters")) && !page.ends_with("index.md")
 }
 
 /// All files that these pages link to or show; each must exist.
@@ -399,31 +301,4 @@ fn same(a: &Value, b: &Value) -> bool {
             _ => a == b,
         },
     }
-}
-
-fn docs() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs")
-}
-
-fn read(file: &Path) -> String {
-    fs::read_to_string(file).unwrap_or_else(|why| panic!("{}: {why}", file.display()))
-}
-
-/// All files with this extension in a folder and its subfolders, in order; there must be one.
-fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(folder) = folders.pop() {
-        for entry in fs::read_dir(&folder).unwrap_or_else(|why| panic!("{}: {why}", folder.display())) {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|e| e == extension) {
-                found.push(path);
-            }
-        }
-    }
-    assert!(!found.is_empty(), "{} has no .{extension} file", folder.display());
-    found.sort();
-    found
 }

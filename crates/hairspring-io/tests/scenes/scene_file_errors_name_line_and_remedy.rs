@@ -97,7 +97,7 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         (format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nname = \"dance\"\n"), &["line 6", "\"dance\""]),
         (
             format!("{GROOM}[[collider]]\nshape.box = {{ center = [0, 0, 0], size = [1, 0, 1] }}\n"),
-            &["line 4", "edges above 0"],
+            &["line 4", "`shape.box.size` must be three numbers above 0 [m]"],
         ),
         (
             format!(
@@ -107,7 +107,7 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         ),
         (
             format!("{GROOM}[[collider]]\nshape.plane = {{ point = [0, 0, 0], normal = [0, 0, 0] }}\n"),
-            &["line 4", "normal"],
+            &["line 4", "`shape.plane.normal` must be a vector with a length above 0"],
         ),
         (
             format!("{GROOM}[[hand]]\ntool.grap = {{ center = [0, 0, 0], radius = 1 }}\n"),
@@ -115,7 +115,7 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         ),
         (
             format!("{GROOM}[[hand]]\ntool.grab = {{ center = [0, 0, 0], radius = 0 }}\n"),
-            &["line 4", "`tool` must be given a `radius` above 0 [m]"],
+            &["line 4", "`tool.grab.radius` must be above 0 [m]"],
         ),
         (format!("{GROOM}{GRAB}{GRAB}joint = \"x\"\n"), &["line 7", "`x` is unknown"]),
         (
@@ -127,17 +127,17 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
             format!(
                 "{GROOM}[[hand]]\ntool.tie = {{ center = [0, 0, 0], axis = [0, 0, 0], radius = 1, reach = 1 }}\n"
             ),
-            &["line 4", "`axis` that is finite and not 0"],
+            &["line 4", "`tool.tie.axis` must be a vector with a length above 0"],
         ),
         (
             format!(
                 "{GROOM}[[hand]]\ntool.comb = {{ a = [0, 0, 0], b = [1, 0, 0], radius = 1, grip = 2, friction = 3 }}\n"
             ),
-            &["line 4", "`friction` from 0 to its `grip`"],
+            &["line 4", "`tool.comb.friction` must be 0 to `grip` [1/s]"],
         ),
         (
             format!("{GROOM}material = \"a\"\n[material.a]\nglobal_shape = {{ pull = 61 }}\n"),
-            &["line 5", "`pull` 0 to 60 [Hz]"],
+            &["line 5", "`global_shape.pull` must be 0 to 60 [Hz]"],
         ),
         (
             format!("{GROOM}material = \"a\"\n[material.a]\nglobal_shape = {{ pul = 6 }}\n"),
@@ -155,7 +155,7 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
                 "{GROOM}[[wind_source]]\nshape.point = {{ center = [0, 0, 0], radius = 1, speed = 1 }}\n[[wind_source]]\n\
                  shape.vortex = {{ center = [0, 0, 0], axis = [0, 0, 0], radius = 1, speed = 1 }}\n"
             ),
-            &["line 6", "an axis that is not 0"],
+            &["line 6", "`shape.vortex.axis` must be a vector with a length above 0"],
         ),
         (
             format!(
@@ -176,6 +176,24 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         (
             format!("{GROOM}material = \"a\"\n[material.a]\ncharge = 1\n"),
             &["line 5", "`charge` must be -1e-6 to 1e-6 [C/m]"],
+        ),
+        // A key of a nested table, in each of the ways to write it.
+        (
+            format!("{GROOM}[[collider]]\n[collider.shape.sphere]\ncenter = [0, 0, 0]\nradius = 0\n"),
+            &["line 6", "`shape.sphere.radius` must be above 0 [m]"],
+        ),
+        (
+            format!("{GROOM}{GRAB}{GRAB}tool.grab.pull = -1\n").replace(
+                &format!("{GRAB}tool"),
+                "[[hand]]\ntool.grab.center = [0, 0, 0]\ntool.grab.radius = 1\ntool",
+            ),
+            &["line 8", "`tool.grab.pull` must be 0 to 1000 [Hz]"],
+        ),
+        (
+            format!(
+                "{GROOM}material = \"a\"\n[material.a]\ndamping = 1\n[material.a.global_shape]\ndamping = 11\n"
+            ),
+            &["line 7", "`global_shape.damping` must be 0 to 10"],
         ),
         ("name = \"empty\"\n".into(), &["scene.toml", "[[groom]]"]),
         ("gravity = [0, 1\n".into(), &["line 1"]),

@@ -325,11 +325,14 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
     for (more, part) in [
         (
             "[[collider]]\nshape.hull = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]] }",
-            "line 7: `shape` must be",
+            "line 7: `shape.hull` must be given `points` that span a volume",
         ),
-        ("[[collider]]\nshape.hull = {}", "line 7: `shape` must be"),
+        ("[[collider]]\nshape.hull = {}", "line 7: `shape.hull` must be"),
         ("[[collider]]\nshape.hull = { file = \"head.obj\", scale = 1 }", "head.obj span no volume"),
-        ("[[collider]]\nshape.hull = { file = \"head.obj\", scale = 0 }", "line 7: `shape` must be"),
+        (
+            "[[collider]]\nshape.hull = { file = \"head.obj\", scale = 0 }",
+            "line 7: `shape.hull.scale` must be above 0 [m]",
+        ),
         ("[[collider]]\nshape.hull = { file = \"none.obj\" }", "scene.toml, line 6, names it as the hull"),
         ("[[collider]]\nshape.hull = { point = [[0, 0, 0]] }", "available keys: points, file, scale"),
         ("[[sheet]]\nfile = \"head.obj\"\nthickness = 0", "line 8: `thickness` must be above 0 [m]"),

@@ -18,44 +18,42 @@
 
 use super::AirSample;
 use crate::parallel::prelude::*;
-use crate::settings::{Check, Validate, above_0, check, from_0};
+use crate::settings::{When, define_settings};
 use crate::{collide::FrameColliders, volume::Density};
 use glam::Vec3;
 
-/// Occlusion of the wind by bodies and hair.
-///
-/// ```
-/// use hairspring::{air::WindOcclusion, prelude::*};
-///
-/// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
-/// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
-/// let occlusion = WindOcclusion { body: 1.0, ..Default::default() };
-/// assert!(occlusion.is_on());
-/// simulation.set_wind_occlusion(&occlusion);
-/// # Ok::<(), hairspring::simulation::BuildError>(())
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(default, deny_unknown_fields)
-)]
-pub struct WindOcclusion {
-    /// Attenuation of the wind inside a body, β [1/m], 0 or more. Default 0: bodies do not block the wind.
-    /// With 100, the wind falls to 1/e within one centimeter.
-    pub body: f32,
-    /// Attenuation of the wind in hair that is as dense as at rest, η [1/m], 0 or more. Default 0: hair does
-    /// not block the wind. With 50, the wind falls to 1/e within two centimeters. The guides of a groom
-    /// represent all of its hair, so even a single strand counts as dense hair.
-    pub hair: f32,
-    /// Distance behind an obstacle at which the wind has recovered [m], above 0. Default 0.5: about three
-    /// head lengths.
-    pub reach: f32,
-}
+/// The condition under which the air moves.
+const BLOWS: When =
+    When::Any(&[When::Not0("wind.velocity"), When::Above0("turbulence.strength"), When::Has("wind_source")]);
 
-impl Default for WindOcclusion {
-    fn default() -> Self {
-        Self { body: 0.0, hair: 0.0, reach: 0.5 }
+define_settings! {
+    /// Occlusion of the wind by bodies and hair.
+    ///
+    /// ```
+    /// use hairspring::{air::WindOcclusion, prelude::*};
+    ///
+    /// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
+    /// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
+    /// let occlusion = WindOcclusion { body: 1.0, ..Default::default() };
+    /// assert!(occlusion.is_on());
+    /// simulation.set_wind_occlusion(&occlusion);
+    /// # Ok::<(), hairspring::simulation::BuildError>(())
+    /// ```
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct WindOcclusion {
+        /// Attenuation of the wind inside a body, β. 0: bodies do not block the wind. With 100, the wind falls to
+        /// 1/e within one centimeter.
+        body: f32 = 0.0, ["1/m"], {0 or more}, when BLOWS;
+        /// Attenuation of the wind in hair that is as dense as at rest, η. 0: hair does not block the wind. With
+        /// 50, the wind falls to 1/e within two centimeters.
+        ///
+        /// The guides of a groom represent all of its hair, so even a single strand counts as dense hair.
+        hair: f32 = 0.0, ["1/m"], {0 or more}, when BLOWS;
+        /// Distance behind an occluder at which the wind has recovered. The default is about three head lengths.
+        reach: f32 = 0.5, ["m"], {above 0}, when When::All(&[
+            BLOWS,
+            When::Any(&[When::Above0("wind_occlusion.body"), When::Above0("wind_occlusion.hair")]),
+        ]);
     }
 }
 
@@ -148,14 +146,4 @@ fn depth(
         way += step;
     }
     depth
-}
-
-impl Validate for WindOcclusion {
-    fn checks(&self) -> Vec<Check> {
-        vec![
-            check(from_0(self.body), "body", "0 or more [1/m]"),
-            check(from_0(self.hair), "hair", "0 or more [1/m]"),
-            check(above_0(Some(self.reach)), "reach", "above 0 [m]"),
-        ]
-    }
 }

@@ -14,26 +14,27 @@
 
 use super::gust::Gust;
 use crate::math::RigidTransform;
-use crate::settings::{Check, Validate, above_0, check, gusts};
+use crate::settings::{Check, Validate, define_settings};
 use glam::Vec3;
 
-/// A source of wind.
-///
-/// For an example, see [`air`](crate::air).
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct WindSource {
-    /// Name of the body joint that the source is attached to. `None`: the source is fixed in the world.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub joint: Option<String>,
-    /// The velocity field, in the space of the body's rest pose or of the world.
-    pub shape: Flow,
-    /// Gust amplitude as a fraction of the mean speed, 0 to 1. Default 0.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub gust: f32,
-    /// Gust frequency [Hz]. Default 0: none. Every source has its own gust phase.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub gust_rate: f32,
+define_settings! {
+    /// A source of wind.
+    ///
+    /// For an example, see [`air`](crate::air).
+    #[derive(Clone, Debug, PartialEq)]
+    entry struct WindSource {
+        /// Name of the body joint that the source is attached to.
+        #[serde(default)]
+        joint: Option<String>, "none", {text "the name of a joint of the body"}, default "fixed in the world";
+        /// The velocity field, in the space of the body's rest pose or of the world.
+        shape: Flow, "none", {table};
+        /// Amplitude of this source's gusts, as a fraction of its mean speed.
+        #[serde(default)]
+        gust: f32 = 0.0, "fraction", {0 to 1};
+        /// Number of gusts of this source per second. Every source has its own gust phase.
+        #[serde(default)]
+        gust_rate: f32 = 0.0, ["Hz"], {0 or more};
+    }
 }
 
 impl WindSource {
@@ -47,56 +48,52 @@ impl WindSource {
     }
 }
 
-/// The velocity field of a [`WindSource`].
-///
-/// For an example, see [`air`](crate::air).
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "kebab-case", deny_unknown_fields)
-)]
-#[non_exhaustive]
-pub enum Flow {
-    /// Flow out of a ball in all directions, or into it.
-    Point {
-        /// Center [m].
-        center: Vec3,
-        /// Radius of the ball, R [m], above 0.
-        radius: f32,
-        /// Speed at the surface of the ball, U [m/s]. Negative: inward.
-        speed: f32,
-    },
-    /// Rotation about an infinite axis.
-    Vortex {
-        /// A point on the axis [m].
-        center: Vec3,
-        /// Direction of the axis, of any length above 0. The rotation follows the right-hand rule.
-        axis: Vec3,
-        /// Distance from the axis at which the flow is fastest, R [m], above 0.
-        radius: f32,
-        /// Speed at that distance, U [m/s].
-        speed: f32,
-    },
-    /// A jet from a round opening.
-    Fan {
-        /// Center of the opening [m].
-        center: Vec3,
-        /// Direction of the jet, of any length above 0.
-        axis: Vec3,
-        /// Radius of the opening, R [m], above 0.
-        radius: f32,
-        /// Speed at the opening, U [m/s].
-        speed: f32,
-        /// Half-angle of the jet's cone, between its axis and its edge [degrees], 0 to 80. Default 11.8, the
-        /// angle of every free turbulent jet: its radius grows by a fifth of the distance (Pope 2000, §5.1).
-        #[cfg_attr(feature = "serde", serde(default = "free_jet"))]
-        spread: f32,
-    },
+define_settings! {
+    /// The velocity field of a [`WindSource`].
+    ///
+    /// For an example, see [`air`](crate::air).
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    #[non_exhaustive]
+    entry enum Flow {
+        /// Flow out of a ball in all directions, or into it.
+        Point = "point" {
+            /// Center of the ball.
+            center: Vec3, ["m"], {vector};
+            /// Radius of the ball, R.
+            radius: f32, ["m"], {above 0};
+            /// Speed of the air at the surface of the ball, U. Negative: inward.
+            speed: f32, ["m/s"], {finite};
+        }
+        /// Rotation about an infinite axis.
+        Vortex = "vortex" {
+            /// A point on the axis.
+            center: Vec3, ["m"], {vector};
+            /// Direction of the axis. The rotation follows the right-hand rule.
+            axis: Vec3, "direction", {direction};
+            /// Distance from the axis at which the flow is fastest, R.
+            radius: f32, ["m"], {above 0};
+            /// Speed of the air at that distance, U.
+            speed: f32, ["m/s"], {finite};
+        }
+        /// A jet from a round opening.
+        Fan = "fan" {
+            /// Center of the opening.
+            center: Vec3, ["m"], {vector};
+            /// Direction of the jet.
+            axis: Vec3, "direction", {direction};
+            /// Radius of the opening, R.
+            radius: f32, ["m"], {above 0};
+            /// Speed of the air at the opening, U.
+            speed: f32, ["m/s"], {finite};
+            /// Half-angle of the jet's cone, between its axis and its edge. The default is the angle of every free
+            /// turbulent jet: its radius grows by a fifth of the distance (Pope 2000, §5.1).
+            #[serde(default = "free_jet")]
+            spread: f32 = free_jet(), ["degrees"], {0 to 80};
+        }
+    }
 }
 
 /// Half-angle of a free turbulent jet [degrees].
-#[cfg(feature = "serde")]
 fn free_jet() -> f32 {
     11.8
 }
@@ -155,32 +152,8 @@ impl Source {
     }
 }
 
-impl Validate for WindSource {
+impl Validate for Flow {
     fn checks(&self) -> Vec<Check> {
-        let mut checks = gusts(self.gust, self.gust_rate).to_vec();
-        checks.push(self.shape.check());
-        checks
-    }
-}
-
-impl Flow {
-    /// Returns the rule of a flow: it is finite and has a valid radius, axis and spread.
-    fn check(&self) -> Check {
-        let sound = |center: Vec3, radius: f32, speed: f32| {
-            center.is_finite() && above_0(Some(radius)) && speed.is_finite()
-        };
-        let points = |axis: Vec3| axis.try_normalize().is_some();
-        let holds = match *self {
-            Flow::Point { center, radius, speed } => sound(center, radius, speed),
-            Flow::Vortex { center, axis, radius, speed } => sound(center, radius, speed) && points(axis),
-            Flow::Fan { center, axis, radius, speed, spread } => {
-                sound(center, radius, speed) && points(axis) && (0.0..=80.0).contains(&spread)
-            }
-        };
-        check(
-            holds,
-            "shape",
-            "finite, with a radius above 0 [m], an axis that is not 0 and a spread of 0 to 80 [degrees]",
-        )
+        self.range_checks()
     }
 }

@@ -16,38 +16,32 @@
 //! Wind sources do not carry the noise along, and bodies do not stop it (Bridson 2007, §2.4: ψ ramped to 0 at
 //! a wall).
 
-use crate::settings::{Check, Validate, above_0, check, from_0};
+use crate::settings::{When, define_settings};
 use glam::{DVec3, IVec3, Mat3, Vec3};
 
-/// Parameters of the turbulence.
-///
-/// ```
-/// use hairspring::air::Turbulence;
-///
-/// let gusty = Turbulence { strength: 1.5, ..Default::default() };
-/// assert!(gusty.is_on() && !Turbulence::default().is_on());
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(default, deny_unknown_fields)
-)]
-pub struct Turbulence {
-    /// Root mean square of the turbulent velocity [m/s], 0 or more. Default 0: none. Outdoors it is a tenth
-    /// to a third of the wind speed.
-    pub strength: f32,
-    /// Size of the largest eddies [m], above 0. Default 0.1: half a head, so that it moves whole locks rather
-    /// than single hairs.
-    pub size: f32,
-    /// Number of octaves, each half the size of the one before, 1 to 6. Default 2: further octaves would be
-    /// smaller than a lock.
-    pub octaves: u32,
-}
+/// The condition under which the shape of the eddies has an effect.
+const BLOWS: When = When::Above0("turbulence.strength");
 
-impl Default for Turbulence {
-    fn default() -> Self {
-        Self { strength: 0.0, size: 0.1, octaves: 2 }
+define_settings! {
+    /// Parameters of the turbulence.
+    ///
+    /// ```
+    /// use hairspring::air::Turbulence;
+    ///
+    /// let gusty = Turbulence { strength: 1.5, ..Default::default() };
+    /// assert!(gusty.is_on() && !Turbulence::default().is_on());
+    /// ```
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Turbulence {
+        /// Root mean square of the turbulent velocity. 0: none. Outdoors it is a tenth to a third of the wind
+        /// speed.
+        strength: f32 = 0.0, ["m/s"], {0 or more};
+        /// Size of the largest eddies. The default is half a head, so that it moves whole locks rather than single
+        /// hairs.
+        size: f32 = 0.1, ["m"], {above 0}, when BLOWS;
+        /// Number of octaves: eddy sizes, each half as large as the one before. With the default, further octaves
+        /// would be smaller than a lock.
+        octaves: u32 = 2, "sizes", {1 to 6}, when BLOWS;
     }
 }
 
@@ -166,16 +160,6 @@ fn corner(n: u32, turned: f64) -> Corner {
     let a = matrix(0) * cos + matrix(9) * sin;
     let [x, y, z] = [a.x_axis, a.y_axis, a.z_axis];
     Corner { a, curl: Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x) }
-}
-
-impl Validate for Turbulence {
-    fn checks(&self) -> Vec<Check> {
-        vec![
-            check(from_0(self.strength), "strength", "0 or more [m/s]"),
-            check(above_0(Some(self.size)), "size", "above 0 [m]"),
-            check((1..=6).contains(&self.octaves), "octaves", "1 to 6"),
-        ]
-    }
 }
 
 #[cfg(test)]

@@ -20,7 +20,7 @@
 
 use super::{HairField, StrandView};
 use crate::math::{RigidTransform, find_keys};
-use crate::settings::{Check, Validate, above_0, check};
+use crate::settings::define_settings;
 use glam::Vec3;
 
 /// 1/4πε₀ of air [N m²/C²].
@@ -30,39 +30,47 @@ pub(crate) const COULOMB: f32 = 8.99e9;
 /// centimeters).
 pub(crate) const BREAKDOWN: f32 = 3e6;
 
-/// A charged ball: a balloon, a hand, a head.
-///
-/// ```
-/// use glam::Vec3;
-/// use hairspring::forces::charge::{Charged, Waypoint};
-///
-/// // A balloon that approaches within a second.
-/// let path = vec![Waypoint { time: 1.0, center: Vec3::Y * 0.2 }];
-/// let (center, radius) = (Vec3::Y, 0.13);
-/// let balloon = Charged { joint: None, center, radius, charge: -1e-7, solid: true, path };
-/// assert!(balloon.center(0.5).distance(Vec3::Y * 0.6) < 1e-6);
-/// ```
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Charged {
-    /// Name of the body joint that carries it. `None`: it is fixed in the world, except for its `path`.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub joint: Option<String>,
-    /// Its center at the start, in the space of the body's rest pose or of the world [m].
-    pub center: Vec3,
-    /// Its radius, R [m], above 0.
-    pub radius: f32,
-    /// Its charge, Q [C], −1e-3 to 1e-3. A rubbed balloon has about −1e-7. The field at the surface is
-    /// clamped to 3 MV/m: 5.6e-6 for a radius of 13 cm.
-    pub charge: f32,
-    /// Whether hair collides with it. Default true. Set it to false for a ball that represents the charge of
-    /// a body, such as the head's.
-    #[cfg_attr(feature = "serde", serde(default = "yes"))]
-    pub solid: bool,
-    /// Waypoints of its center in order of time. The center moves linearly between them and rests after the
-    /// last. Default: it does not move.
-    #[cfg_attr(feature = "serde", serde(default))]
-    pub path: Vec<Waypoint>,
+define_settings! {
+    /// A charged ball: a balloon, a hand, a head.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use hairspring::forces::charge::{Charged, Waypoint};
+    ///
+    /// // A balloon that approaches within a second.
+    /// let path = vec![Waypoint { time: 1.0, center: Vec3::Y * 0.2 }];
+    /// let (center, radius) = (Vec3::Y, 0.13);
+    /// let balloon = Charged { joint: None, center, radius, charge: -1e-7, solid: true, path };
+    /// assert!(balloon.center(0.5).distance(Vec3::Y * 0.6) < 1e-6);
+    /// ```
+    #[derive(Clone, Debug, PartialEq)]
+    entry struct Charged {
+        /// Name of the body joint that carries the ball.
+        #[serde(default)]
+        joint: Option<String>, "none", {text "the name of a joint of the body"},
+            default "fixed in the world, except for its path";
+        /// Center of the ball at the start, in the space of the body's rest pose or of the world.
+        center: Vec3, ["m"], {vector};
+        /// Radius of the ball, R.
+        radius: f32, ["m"], {above 0};
+        /// Charge of the ball, Q. Hair of the opposite sign is attracted, and hair of the same sign is repelled. A
+        /// rubbed balloon has about -1e-7.
+        ///
+        /// The field at the surface is clamped to 3 MV/m: 5.6e-6 for a radius of 13 cm.
+        charge: f32, ["C"], {-1e-3 to 1e-3};
+        /// Whether hair collides with the ball.
+        ///
+        /// Set it to false for a ball that represents the charge of a body, such as the head's.
+        #[serde(default = "yes")]
+        solid: bool = true, "none", {switch};
+        /// Positions of its center in order of time. The center moves linearly between them and rests after the
+        /// last.
+        #[serde(default)]
+        path: Vec<Waypoint> = Vec::new(), "s, m", {
+            check |ball| ball.path_is_valid()
+                => "finite positions [m] at times above 0 [s], each later than the one before"
+        };
+    }
 }
 
 #[cfg(feature = "serde")]
@@ -70,19 +78,28 @@ fn yes() -> bool {
     true
 }
 
-/// A waypoint of a [`Charged`] ball.
-///
-/// For an example, see [`Charged`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Waypoint {
-    /// Time at which the ball is there [s], above 0.
-    pub time: f32,
-    /// Position, in the same space as `center` [m].
-    pub center: Vec3,
+define_settings! {
+    /// A waypoint of a [`Charged`] ball.
+    ///
+    /// For an example, see [`Charged`].
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    entry struct Waypoint {
+        /// Time at which the ball is there, later than that of the previous waypoint.
+        time: f32, ["s"], {above 0};
+        /// Position of the ball's center, in the same space as that at the start.
+        center: Vec3, ["m"], {vector};
+    }
 }
 
 impl Charged {
+    /// Returns whether the positions are finite, and the times above 0 and increasing.
+    fn path_is_valid(&self) -> bool {
+        let times = || self.path.iter().map(|p| p.time);
+        let before = std::iter::once(0.0).chain(times());
+        let finite = self.path.iter().all(|p| p.center.is_finite() && p.time.is_finite());
+        finite && times().zip(before).all(|(time, before)| time > before)
+    }
+
     /// Returns its center at `time` [s], with the joint that carries it at rest [m].
     pub fn center(&self, time: f64) -> Vec3 {
         let start = Waypoint { time: 0.0, center: self.center };
@@ -159,20 +176,5 @@ impl Charges<'_> {
             }
             strand.accelerate(i, self.hair.field(start + x) * per_field);
         }
-    }
-}
-
-impl Validate for Charged {
-    fn checks(&self) -> Vec<Check> {
-        let times = || self.path.iter().map(|p| p.time);
-        let before = std::iter::once(0.0).chain(times());
-        let finite = self.path.iter().all(|p| p.center.is_finite() && p.time.is_finite());
-        let path = finite && times().zip(before).all(|(time, before)| time > before);
-        vec![
-            check(self.center.is_finite(), "center", "three finite numbers [m]"),
-            check(above_0(Some(self.radius)), "radius", "above 0 [m]"),
-            check((-1e-3..=1e-3).contains(&self.charge), "charge", "-1e-3 to 1e-3 [C]"),
-            check(path, "path", "finite positions [m] at times above 0 [s], each later than the one before"),
-        ]
     }
 }

@@ -14,44 +14,45 @@
 //! Individual tines: the hair is not divided into locks, one for each gap.
 
 use super::StrandView;
-use crate::math::RigidTransform;
+use crate::{math::RigidTransform, settings::define_settings};
 use glam::Vec3;
 
-/// A capsule that drags hair along, mainly transverse to the strands.
-///
-/// ```
-/// use glam::Vec3;
-/// use hairspring::forces::{Manipulator, comb::Comb};
-///
-/// let (a, b) = (Vec3::NEG_X * 0.05, Vec3::X * 0.05);
-/// let comb = Manipulator::Comb(Comb { a, b, radius: 0.01, grip: 1000.0, friction: 3.0 });
-/// assert!(matches!(comb, Manipulator::Comb(Comb { radius: 0.01, .. })));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Comb {
-    /// One end of the row of tines [m], in the space that it moves with.
-    pub a: Vec3,
-    /// The other end [m].
-    pub b: Vec3,
-    /// Radius around the line between them [m], above 0: half the length of the tines.
-    pub radius: f32,
-    /// Rate at which hair takes on the comb's velocity transverse to the strand, c⊥ [1/s], 0 to 10000.
-    /// Default 1000: rigid within a substep.
-    #[cfg_attr(feature = "serde", serde(default = "firm"))]
-    pub grip: f32,
-    /// The same rate along the strand, c∥ [1/s], 0 to `grip`. Default 3: hair slides on plastic with some
-    /// friction.
-    #[cfg_attr(feature = "serde", serde(default = "slick"))]
-    pub friction: f32,
+define_settings! {
+    /// A capsule that drags hair along, mainly transverse to the strands.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use hairspring::forces::{Manipulator, comb::Comb};
+    ///
+    /// let (a, b) = (Vec3::NEG_X * 0.05, Vec3::X * 0.05);
+    /// let comb = Manipulator::Comb(Comb { a, b, radius: 0.01, grip: 1000.0, friction: 3.0 });
+    /// assert!(matches!(comb, Manipulator::Comb(Comb { radius: 0.01, .. })));
+    /// ```
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    entry struct Comb {
+        /// One end of the row of tines, in the space that it moves with.
+        a: Vec3, ["m"], {vector};
+        /// The other end of the row of tines.
+        b: Vec3, ["m"], {vector};
+        /// Radius around the line between the ends: half the length of the tines.
+        radius: f32, ["m"], {above 0};
+        /// Rate at which hair takes on the comb's velocity transverse to the strand, c⊥. With the default, hair is
+        /// rigid within a substep.
+        #[serde(default = "firm")]
+        grip: f32 = firm(), ["1/s"], {0 to 10000};
+        /// Rate at which hair takes on the comb's velocity along the strand, c∥. With the default, hair slides as
+        /// on plastic with some friction.
+        #[serde(default = "slick")]
+        friction: f32 = slick(), ["1/s"], {
+            check |comb| (0.0..=comb.grip).contains(&comb.friction) => "0 to `grip`"
+        };
+    }
 }
 
-#[cfg(feature = "serde")]
 fn firm() -> f32 {
     1000.0
 }
 
-#[cfg(feature = "serde")]
 fn slick() -> f32 {
     3.0
 }

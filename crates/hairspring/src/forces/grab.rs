@@ -15,33 +15,32 @@
 //! Fingers: hair does not slide through the ball. Use a collider for a hand that strokes the hair.
 
 use super::bond::{Bond, Spring};
+use crate::settings::define_settings;
 use glam::Vec3;
 
-/// A ball that holds the points that were inside. If it does not move, it is a pin.
-///
-/// For an example, see [`forces`](crate::forces).
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Grab {
-    /// Center of the ball [m], in the space that it moves with.
-    pub center: Vec3,
-    /// Radius of the ball [m], above 0.
-    pub radius: f32,
-    /// Natural frequency of a free point, f [Hz], 0 to 1000. Default 60: points sag by 0.07 mm under their
-    /// own weight.
-    #[cfg_attr(feature = "serde", serde(default = "firm"))]
-    pub pull: f32,
-    /// Damping ratio, relative to critical, ζ, 0 to 10. Default 1: held points do not oscillate.
-    #[cfg_attr(feature = "serde", serde(default = "critical"))]
-    pub damping: f32,
+define_settings! {
+    /// A ball that holds the points that were inside. If it does not move, it is a pin.
+    ///
+    /// For an example, see [`forces`](crate::forces).
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    entry struct Grab {
+        /// Center of the ball, in the space that it moves with.
+        center: Vec3, ["m"], {vector};
+        /// Radius of the ball.
+        radius: f32, ["m"], {above 0};
+        /// Natural frequency of a free point, f. With the default, points sag by 0.07 mm under their own weight.
+        #[serde(default = "firm")]
+        pull: f32 = firm(), ["Hz"], {0 to 1000};
+        /// Damping ratio, relative to critical, ζ. With the default, held points do not oscillate.
+        #[serde(default = "critical")]
+        damping: f32 = critical(), "damping ratio", {0 to 10};
+    }
 }
 
-#[cfg(feature = "serde")]
 pub(super) fn firm() -> f32 {
     60.0
 }
 
-#[cfg(feature = "serde")]
 pub(super) fn critical() -> f32 {
     1.0
 }

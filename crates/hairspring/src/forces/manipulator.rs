@@ -7,7 +7,7 @@ use super::{
     grab::Grab,
     tie::Tie,
 };
-use crate::settings::{Check, Validate, above_0, check, from_0};
+use crate::settings::{Check, Fields, Setting, Validate, with_prefix};
 use crate::{collide::FrameColliders, math::RigidTransform};
 use glam::Vec3;
 
@@ -111,35 +111,21 @@ impl ActiveManipulator {
 }
 
 impl Validate for Manipulator {
-    /// All rules are about the tool as a whole.
     fn checks(&self) -> Vec<Check> {
-        let place = |ok: bool| check(ok, "tool", "at three finite numbers [m]");
-        let radius = |r: f32| check(above_0(Some(r)), "tool", "given a `radius` above 0 [m]");
-        let pull = |f: f32| check((0.0..=1e3).contains(&f), "tool", "given a `pull` from 0 to 1000 [Hz]");
-        let damping = |d: f32| check((0.0..=10.0).contains(&d), "tool", "given a `damping` from 0 to 10");
-        match *self {
-            Manipulator::Grab(g) => {
-                vec![place(g.center.is_finite()), radius(g.radius), pull(g.pull), damping(g.damping)]
-            }
-            Manipulator::Comb(c) => vec![
-                place(c.a.is_finite() && c.b.is_finite()),
-                radius(c.radius),
-                check((0.0..=1e4).contains(&c.grip), "tool", "given a `grip` from 0 to 10000 [1/s]"),
-                check(
-                    (0.0..=c.grip).contains(&c.friction),
-                    "tool",
-                    "given a `friction` from 0 to its `grip` [1/s]",
-                ),
-            ],
-            Manipulator::Tie(t) => vec![
-                place(t.center.is_finite()),
-                radius(t.radius),
-                check(t.axis.try_normalize().is_some(), "tool", "given an `axis` that is finite and not 0"),
-                check(above_0(Some(t.reach)), "tool", "given a `reach` above 0 [m]"),
-                check(from_0(t.gather), "tool", "given a `gather` of 0 or more [s]"),
-                pull(t.pull),
-                damping(t.damping),
-            ],
-        }
+        let (tool, checks) = match self {
+            Self::Grab(grab) => ("grab", grab.checks()),
+            Self::Comb(comb) => ("comb", comb.checks()),
+            Self::Tie(tie) => ("tie", tie.checks()),
+        };
+        with_prefix(tool, checks).collect()
+    }
+}
+
+impl Setting for Manipulator {
+    const FIELDS: Fields =
+        &[("grab", Grab::PARAMETERS), ("comb", Comb::PARAMETERS), ("tie", Tie::PARAMETERS)];
+
+    fn table_checks(&self) -> Vec<Check> {
+        self.checks()
     }
 }

@@ -18,43 +18,47 @@
 //! does not slide off the hair. Only guides are gathered, and follow hairs keep their distance from their
 //! guides. If guides are far apart, more guides or clumping make the tie tight.
 
-use super::bond::{Bond, Spring};
+use super::{
+    bond::{Bond, Spring},
+    grab::{critical, firm},
+};
+use crate::settings::define_settings;
 use glam::Vec3;
 
-/// A ring that gathers strands.
-///
-/// ```
-/// use glam::Vec3;
-/// use hairspring::forces::{Manipulator, tie::Tie};
-///
-/// let ring = Tie {
-///     center: Vec3::ZERO, axis: Vec3::NEG_Y, radius: 0.01, reach: 0.1, gather: 0.5, pull: 60.0, damping: 1.0,
-/// };
-/// assert!(matches!(Manipulator::Tie(ring), Manipulator::Tie(Tie { reach: 0.1, .. })));
-/// ```
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
-pub struct Tie {
-    /// Center of the ring [m], in the space that it moves with.
-    pub center: Vec3,
-    /// Direction in which hair leaves the ring, of any length above 0.
-    pub axis: Vec3,
-    /// Radius of the gathered hair [m], above 0.
-    pub radius: f32,
-    /// Maximum distance from the center at which a strand is gathered [m], above 0.
-    pub reach: f32,
-    /// Duration of gathering [s], 0 or more. Default 0.5, which avoids a jerk.
-    #[cfg_attr(feature = "serde", serde(default = "half"))]
-    pub gather: f32,
-    /// Natural frequency of a free point, f [Hz], 0 to 1000. Default 60.
-    #[cfg_attr(feature = "serde", serde(default = "super::grab::firm"))]
-    pub pull: f32,
-    /// Damping ratio, relative to critical, ζ, 0 to 10. Default 1.
-    #[cfg_attr(feature = "serde", serde(default = "super::grab::critical"))]
-    pub damping: f32,
+define_settings! {
+    /// A ring that gathers strands.
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use hairspring::forces::{Manipulator, tie::Tie};
+    ///
+    /// let ring = Tie {
+    ///     center: Vec3::ZERO, axis: Vec3::NEG_Y, radius: 0.01, reach: 0.1, gather: 0.5, pull: 60.0, damping: 1.0,
+    /// };
+    /// assert!(matches!(Manipulator::Tie(ring), Manipulator::Tie(Tie { reach: 0.1, .. })));
+    /// ```
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    entry struct Tie {
+        /// Center of the ring, in the space that it moves with.
+        center: Vec3, ["m"], {vector};
+        /// Direction in which hair leaves the ring.
+        axis: Vec3, "direction", {direction};
+        /// Radius of the gathered hair.
+        radius: f32, ["m"], {above 0};
+        /// Maximum distance from the center at which a strand is gathered.
+        reach: f32, ["m"], {above 0};
+        /// Duration of gathering. The default avoids a jerk.
+        #[serde(default = "half")]
+        gather: f32 = half(), ["s"], {0 or more};
+        /// Natural frequency of a free point, f.
+        #[serde(default = "firm")]
+        pull: f32 = firm(), ["Hz"], {0 to 1000};
+        /// Damping ratio, relative to critical, ζ.
+        #[serde(default = "critical")]
+        damping: f32 = critical(), "damping ratio", {0 to 10};
+    }
 }
 
-#[cfg(feature = "serde")]
 fn half() -> f32 {
     0.5
 }

@@ -2,35 +2,25 @@
 
 use super::{DEFAULT_RADIUS, Groom, RootBinding};
 use crate::body::{Mesh, place_on};
+use crate::settings::define_settings;
 use glam::{Quat, Vec2, Vec3};
 
-/// Settings of [`grow`].
-///
-/// For an example, see [`grow`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(default, deny_unknown_fields)
-)]
-pub struct Growth {
-    /// Number of strands, 1 to 10,000,000. Default 1,000.
-    pub strands: u32,
-    /// Points per strand, 3 to 256. Default 16.
-    pub points: u32,
-    /// Length of the longest strand [m], above 0. Default 0.1.
-    pub length: f32,
-    /// Variation of the length: the shortest strand is shorter by this fraction, 0 (all alike) to 1. Default
-    /// 0.2.
-    pub spread: f32,
-    /// How far a strand bends down toward its tip: 0 follows the surface's normal, 1 ends pointing down.
-    /// Default 0.5.
-    pub fall: f32,
-}
-
-impl Default for Growth {
-    fn default() -> Self {
-        Self { strands: 1_000, points: 16, length: 0.1, spread: 0.2, fall: 0.5 }
+define_settings! {
+    /// Settings of [`grow()`].
+    ///
+    /// For an example, see [`grow`].
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Growth {
+        /// Number of strands, uniform by area.
+        strands: u32 = 1_000, "strands", {1 to 10000000};
+        /// Points per strand. More points bend more finely, at a proportional cost.
+        points: u32 = 16, "points", {3 to 256};
+        /// Length of the longest strand.
+        length: f32 = 0.1, ["m"], {above 0};
+        /// Variation of the length: the shortest strand is shorter by this fraction.
+        spread: f32 = 0.2, "fraction", {0 to 1};
+        /// How far a strand bends down toward its tip: 0 follows the surface's normal, 1 ends pointing down.
+        fall: f32 = 0.5, "fraction", {0 to 1};
     }
 }
 

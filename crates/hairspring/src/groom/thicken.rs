@@ -3,29 +3,24 @@
 
 use super::{Groom, GuideWeights, grow::evenly};
 use crate::body::{Mesh, NearestTree};
+use crate::settings::{When, define_settings};
 use glam::Vec3;
 
-/// Settings of [`thicken`].
-///
-/// For an example, see [`thicken`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(default, deny_unknown_fields)
-)]
-pub struct Thicken {
-    /// Number of follow hairs for each strand, 0 to 1,000. Default 0.
-    pub copies: u32,
-    /// Radius of the disc on the skin in which they grow [m], 0 or more. Default 0.001.
-    pub radius: f32,
-    /// Distance from their strand at the tip, relative to that at the root; 0 or more. Default 1.
-    pub tip: f32,
-}
+/// The condition under which the placement of the copies has an effect.
+const COPIED: When = When::Above0("groom.thicken.copies");
 
-impl Default for Thicken {
-    fn default() -> Self {
-        Self { copies: 0, radius: 0.001, tip: 1.0 }
+define_settings! {
+    /// Settings of [`thicken()`].
+    ///
+    /// For an example, see [`thicken`].
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct Thicken {
+        /// Number of follow hairs that are added around each strand.
+        copies: u32 = 0, "hairs", {0 to 1000};
+        /// Radius of the disc on the skin in which the copies grow.
+        radius: f32 = 0.001, ["m"], {0 or more}, when COPIED;
+        /// Distance of a copy from its strand at the tip, relative to that at the root.
+        tip: f32 = 1.0, "factor", {0 or more}, when COPIED;
     }
 }
 

@@ -1,27 +1,25 @@
 //! Settings of the global shape: a pull of the strand to its rest shape.
 
-/// Parameters of the global shape.
-///
-/// Fields may be added: write `..Default::default()`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(default, deny_unknown_fields)
-)]
-pub struct GlobalShape {
-    /// Natural frequency of a free point, f [Hz], 0 to 60. Default 0: no global shape. From about 1 on, hair
-    /// keeps its style during a walk; from about 4 on, it looks set.
-    pub pull: f32,
-    /// Frequency at the tip relative to that at the root, 0 or more. Default 1.
-    pub tip: f32,
-    /// Damping ratio, relative to critical, ζ, 0 to 10. Default 0.5.
-    pub damping: f32,
-}
+use crate::settings::{When, define_settings};
 
-impl Default for GlobalShape {
-    fn default() -> Self {
-        Self { pull: 0.0, tip: 1.0, damping: 0.5 }
+/// The condition under which the other parameters of the global shape have an effect.
+const PULLED: When =
+    When::All(&[When::On("solver.global_shape"), When::Above0("material.global_shape.pull")]);
+
+define_settings! {
+    /// Parameters of the global shape.
+    ///
+    /// Fields may be added: write `..Default::default()`.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    pub struct GlobalShape {
+        /// Frequency of a spring that pulls each point to the groomed shape, which the root carries: the natural
+        /// frequency of a free point. 0: no global shape. From about 1 on, hair keeps its style during a walk; from
+        /// about 4 on, it looks set.
+        pull: f32 = 0.0, ["Hz"], {0 to 60}, when When::On("solver.global_shape");
+        /// Frequency at the tip relative to that at the root.
+        tip: f32 = 1.0, "factor", {0 or more}, when PULLED;
+        /// Damping ratio of the spring, relative to critical.
+        damping: f32 = 0.5, "damping ratio", {0 to 10}, when PULLED;
     }
 }
 

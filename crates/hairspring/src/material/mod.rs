@@ -12,136 +12,99 @@ mod global_shape;
 
 pub use global_shape::GlobalShape;
 
-use crate::settings::{Check, Validate, above_0, check, from_0};
+use crate::settings::{When, define_settings};
 
-/// The fiber of one group of strands: physical constants, and dimensionless multipliers for artists.
-///
-/// The constants are those of human hair (Robbins 2012, *Chemical and Physical Behavior of Human Hair*).
-///
-/// Fields may be added: write `..Default::default()`. For an example, see [`material`](crate::material).
-#[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(default, deny_unknown_fields)
-)]
-pub struct Material {
-    /// Elastic model of a strand. Default `auto`.
-    pub model: Model,
-    /// Fiber radius [m], which replaces the groom's; `None`: the groom's radius. Human hair: 25e-6 to 50e-6.
-    pub radius: Option<f32>,
-    /// Density of the fiber [kg/m³]. Default 1310: dry hair, 1300 to 1320.
-    pub density: f32,
-    /// Distribution of mass along a strand: weights at equal spacing in arc length from root to tip, linear
-    /// in between. Default `[1.0]`: uniform. Only the ratios count; the total mass is given by the density.
-    /// For example, `[1.0, 3.0]` is three times as heavy at the tip as at the root. The profile does not
-    /// affect the stiffness or the drag of a length of hair, which depend on the fiber's radius.
+/// Only integrators with bending use the bending parameters.
+const BENDS: When = When::IsNot("solver.integrator", &["ftl", "dftl"]);
+
+define_settings! {
+    /// The fiber of one group of strands: physical constants, and dimensionless multipliers for artists.
     ///
-    /// 1 to 64 values above 0, the largest at most 100 times the smallest. A light strand under a heavy tip
-    /// is as hard to solve as one with many more points. In the bench's shake at 4 substeps, 32 points do not
-    /// jitter with `[1, 1, 1, 100]`; nor do 64 points with `[1, 1, 1, 10]`, or with 30 in place of 10 at 8
-    /// substeps.
-    pub mass_profile: Vec<f32>,
-    /// Young's modulus along the fiber [Pa]. Default 3.9e9.
-    pub young: f32,
-    /// Shear modulus of the fiber [Pa], above 0. Default 0.89e9. It is independent of Young's modulus because
-    /// hair is anisotropic; with the defaults, GJ/EI is 0.46.
-    pub shear: f32,
-    /// Multiplier of the bending and twisting stiffness EI and GJ, 0 or more. Default 1: a single hair.
-    /// Styled hair is also held by products and neighboring hairs, so presets use more.
-    pub bend: f32,
-    /// Bending stiffness at the tip as a fraction of that at the root, 0 to 1 or more. Default 1.
-    pub bend_tip: f32,
-    /// Ratio of the short to the long axis of the fiber's cross-section, above 0, at most 1; the area is
-    /// kept. Default 1: round. Asian hair is about 0.9, African about 0.6. The long axis is along the normal
-    /// of the strand's frame at its root. Only the rod model uses it.
-    pub flatness: f32,
-    /// Relaxation time of the fiber's bending [s], 0 or more. Larger values damp the hair's own vibrations
-    /// faster. Default 0.01: the solver adds almost no damping, and in a head of hair, neighboring hairs
-    /// absorb a swing within a second.
-    pub damping: f32,
-    /// Multiplier of the air drag of a single, smooth fiber, 0 or more. Default 1. In a scene, dense hair
-    /// also shields itself from the air according to its density.
-    pub drag: f32,
-    /// Static Coulomb friction coefficient against the body, 0 to 1. Default 0.3. Hair on skin has 0.1 to 0.3
-    /// along the scales, and more against them.
-    pub friction: f32,
-    /// Ratio of kinetic to static friction, 0 to 1. Kinetic friction acts on a strand that slides faster than
-    /// a millimeter per second. Default 1: one coefficient for both, which avoids jerks when a strand comes
-    /// loose.
-    pub friction_kinetic: f32,
-    /// Spring to the rest shape, carried by the root; enabled by `Solver::global_shape`. Default: none.
-    pub global_shape: GlobalShape,
-    /// Maximum distance of a point from its root, relative to that at rest [1], 1 to 10 (long-range
-    /// attachment). 0, the default: no limit. Not physical: it limits how far hair falls. From 1.01 on it has
-    /// no effect at rest.
-    pub tether: f32,
-    /// Static charge per length of hair [C/m], −1e-6 to 1e-6. Default 0. Hair of 35 µm holds at most 6e-9,
-    /// where the air at its surface breaks down. From 5e-10 on, a field of 100 kV/m lifts it against gravity.
-    pub charge: f32,
-}
-
-/// The elastic model of a strand.
-///
-/// For an example, see [`material`](crate::material).
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
-#[non_exhaustive]
-pub enum Model {
-    /// The rod model. Straight, round strands, for which the result is the same, use the cheaper curvature
-    /// model.
-    #[default]
-    Auto,
-    /// Stretch, bend, torsion and altitude springs (Selle 2008), with an extra particle beside each segment.
-    Springs,
-    /// Stretch, and bending by the curvature vector in a frame transported from the root, without twist.
-    Curvature,
-    /// A discrete elastic rod: curvature, and a twist angle for each segment.
-    Rod,
-}
-
-impl Model {
-    /// All models.
-    pub const ALL: [Model; 4] = [Self::Auto, Self::Springs, Self::Curvature, Self::Rod];
-
-    /// Returns the name used in scene files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Auto => "auto",
-            Self::Springs => "springs",
-            Self::Curvature => "curvature",
-            Self::Rod => "rod",
-        }
+    /// The constants are those of human hair (Robbins 2012, *Chemical and Physical Behavior of Human Hair*).
+    ///
+    /// Fields may be added: write `..Default::default()`. For an example, see [`material`](crate::material).
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Material {
+        /// Elastic model of a strand. `auto`: rod, or curvature where both give the same result.
+        model: Model = Model::Auto, "none", {words},
+            when When::IsNot("solver.integrator", &["ftl", "dftl", "local-global"]);
+        /// Fiber radius, which replaces the groom's. Human hair: 25e-6 to 50e-6.
+        radius: Option<f32> = None, ["m"], {above 0}, default "the groom's own";
+        /// Density of the fiber. Dry human hair: 1300 to 1320.
+        density: f32 = 1310.0, ["kg/m³"], {above 0};
+        /// Distribution of mass along a strand: weights at equal spacing in arc length from root to tip, linear
+        /// in between. Only the ratios count; the total mass is given by the density. For example, `[1.0, 3.0]` is
+        /// three times as heavy at the tip as at the root.
+        ///
+        /// The profile does not affect the stiffness or the drag of a length of hair, which depend on the fiber's
+        /// radius. A light strand under a heavy tip is as hard to solve as one with many more points. In the
+        /// bench's shake at 4 substeps, 32 points do not jitter with `[1, 1, 1, 100]`; nor do 64 points with
+        /// `[1, 1, 1, 10]`, or with 30 in place of 10 at 8 substeps.
+        mass_profile: Vec<f32> = vec![1.0], "ratios", {
+            check |m| is_mass_profile(&m.mass_profile)
+                => "1 to 64 numbers above 0, the largest at most 100 times the smallest"
+        };
+        /// Young's modulus along the fiber. The default is that of human hair.
+        young: f32 = 3.9e9, ["Pa"], {above 0}, when BENDS;
+        /// Shear modulus of the fiber, which resists twisting. The default is that of human hair.
+        ///
+        /// It is independent of Young's modulus because hair is anisotropic; with the defaults, GJ/EI is 0.46.
+        shear: f32 = 0.89e9, ["Pa"], {above 0}, when When::All(&[
+            When::IsNot("solver.integrator", &["ftl", "dftl", "local-global"]),
+            When::IsNot("material.model", &["curvature"]),
+        ]);
+        /// Multiplier of the bending and twisting stiffness EI and GJ. The default is a single hair. Styled hair
+        /// is also held by products and neighboring hairs, so presets use more.
+        bend: f32 = 1.0, "factor", {0 or more}, when BENDS;
+        /// Bending stiffness at the tip as a fraction of that at the root.
+        bend_tip: f32 = 1.0, "factor", {0 or more}, when BENDS;
+        /// Ratio of the short to the long axis of the fiber's cross-section; the area is kept. 1: round. Asian
+        /// hair is about 0.9, African about 0.6. Only the rod model uses it.
+        ///
+        /// The long axis is along the normal of the strand's frame at its root.
+        flatness: f32 = 1.0, "fraction", {0.05 to 1}, when BENDS;
+        /// Relaxation time of the fiber's bending. Larger values damp the hair's own vibrations faster.
+        ///
+        /// With the default, the solver adds almost no damping, and in a head of hair, neighboring hairs absorb a
+        /// swing within a second.
+        damping: f32 = 0.01, ["s"], {0 or more}, when BENDS;
+        /// Multiplier of the air drag of a single, smooth fiber. In a scene, dense hair also shields itself from
+        /// the air according to its density.
+        drag: f32 = 1.0, "factor", {0 or more};
+        /// Static Coulomb friction coefficient against the body. Hair on skin has 0.1 to 0.3 along the scales, and
+        /// more against them.
+        friction: f32 = 0.3, "coefficient", {0 to 1};
+        /// Ratio of kinetic to static friction. Kinetic friction acts on a strand that slides faster than a
+        /// millimeter per second. Below 1, hair that comes loose keeps sliding, which may start with a jerk.
+        friction_kinetic: f32 = 1.0, "fraction", {0 to 1}, when When::Above0("material.friction");
+        /// Spring to the rest shape, carried by the root. `Solver::global_shape` enables it.
+        global_shape: GlobalShape = GlobalShape::default(), "none", {table};
+        /// Maximum distance of a point from its root, relative to that at rest (long-range attachment). 0: no
+        /// limit. It is not physical, and limits how far hair falls. From 1.01 on it has no effect at rest.
+        tether: f32 = 0.0, "factor", {0 or 1 to 10};
+        /// Static charge per length of hair. Charged bodies attract and repel it, and it repels itself. Hair of 35 µm holds at most
+        /// 6e-9, where the air at its surface breaks down. From 5e-10 on, a field of 100 kV/m lifts it against
+        /// gravity.
+        charge: f32 = 0.0, ["C/m"], {-1e-6 to 1e-6};
     }
 }
 
-impl Validate for Material {
-    fn checks(&self) -> Vec<Check> {
-        let shape = &self.global_shape;
-        let shape_in_range =
-            (0.0..=60.0).contains(&shape.pull) && from_0(shape.tip) && (0.0..=10.0).contains(&shape.damping);
-        let tether = self.tether == 0.0 || (1.0..=10.0).contains(&self.tether);
-        vec![
-            check(above_0(self.radius), "radius", "above 0 [m]"),
-            check(above_0(Some(self.density)), "density", "above 0 [kg/m³]"),
-            check(
-                is_mass_profile(&self.mass_profile),
-                "mass_profile",
-                "1 to 64 numbers above 0, the largest at most 100 times the smallest",
-            ),
-            check(above_0(Some(self.young)), "young", "above 0 [Pa]"),
-            check(above_0(Some(self.shear)), "shear", "above 0 [Pa]"),
-            check(from_0(self.bend), "bend", "0 or more"),
-            check(from_0(self.bend_tip), "bend_tip", "0 or more"),
-            check((0.05..=1.0).contains(&self.flatness), "flatness", "0.05 to 1"),
-            check(from_0(self.damping), "damping", "0 or more [s]"),
-            check(from_0(self.drag), "drag", "0 or more"),
-            check((0.0..=1.0).contains(&self.friction), "friction", "0 to 1"),
-            check((0.0..=1.0).contains(&self.friction_kinetic), "friction_kinetic", "0 to 1"),
-            check(shape_in_range, "global_shape", "`pull` 0 to 60 [Hz], `tip` 0 or more, `damping` 0 to 10"),
-            check(tether, "tether", "0 (none), or 1 to 10"),
-            check((-1e-6..=1e-6).contains(&self.charge), "charge", "-1e-6 to 1e-6 [C/m]"),
-        ]
+define_settings! {
+    /// The elastic model of a strand.
+    ///
+    /// For an example, see [`material`](crate::material).
+    #[non_exhaustive]
+    choice Model {
+        /// The rod model. Straight, round strands, for which the result is the same, use the cheaper curvature
+        /// model.
+        #[default]
+        Auto = "auto",
+        /// Stretch, bend, torsion and altitude springs (Selle 2008), with an extra particle beside each segment.
+        Springs = "springs",
+        /// Stretch, and bending by the curvature vector in a frame transported from the root, without twist.
+        Curvature = "curvature",
+        /// A discrete elastic rod: curvature, and a twist angle for each segment.
+        Rod = "rod",
     }
 }
 
@@ -150,29 +113,6 @@ fn is_mass_profile(weights: &[f32]) -> bool {
     let least = weights.iter().copied().fold(f32::INFINITY, f32::min);
     let holds = |w: &f32| w.is_finite() && *w > 0.0 && *w <= least * 100.0;
     (1..=64).contains(&weights.len()) && weights.iter().all(holds)
-}
-
-impl Default for Material {
-    fn default() -> Self {
-        Self {
-            model: Model::Auto,
-            radius: None,
-            density: 1310.0,
-            mass_profile: vec![1.0],
-            young: 3.9e9,
-            shear: 0.89e9,
-            bend: 1.0,
-            bend_tip: 1.0,
-            flatness: 1.0,
-            damping: 0.01,
-            drag: 1.0,
-            friction: 0.3,
-            friction_kinetic: 1.0,
-            global_shape: GlobalShape::default(),
-            tether: 0.0,
-            charge: 0.0,
-        }
-    }
 }
 
 /// Names of the presets known to [`preset`].

@@ -1,14 +1,16 @@
-//! Ranges of settings: one rule a value, used by the readers of scene files and by code that builds a simulation.
+//! Rules of settings: one a value, used by the readers of scene files and by code that builds a simulation.
+
+use std::borrow::Cow;
 
 /// A rule for the value of a setting.
 ///
 /// For an example, see [`settings`](crate::settings).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Check {
     /// Whether the value follows the rule.
     pub holds: bool,
     /// The setting, as scene files name it.
-    pub key: &'static str,
+    pub key: Cow<'static, str>,
     /// What the value must be, such as `0 to 1`.
     pub expected: &'static str,
 }
@@ -16,18 +18,16 @@ pub struct Check {
 /// The error for a setting that is not finite or outside of its range.
 ///
 /// For an example, see [`settings`](crate::settings).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{key}` must be {expected}")]
 pub struct OutOfRange {
     /// The setting, as scene files name it.
-    pub key: &'static str,
+    pub key: Cow<'static, str>,
     /// What the value must be.
     pub expected: &'static str,
 }
 
 /// Settings with a documented range for each value.
-///
-/// For an example, see [`settings`](crate::settings).
 pub trait Validate {
     /// Returns the rules of all values, in the order of the fields.
     fn checks(&self) -> Vec<Check>;
@@ -46,15 +46,15 @@ pub trait Validate {
 
 /// Makes a rule.
 pub const fn check(holds: bool, key: &'static str, expected: &'static str) -> Check {
-    Check { holds, key, expected }
+    Check { holds, key: Cow::Borrowed(key), expected }
 }
 
-/// Returns whether a value is finite and above 0, or absent.
-pub fn above_0(x: Option<f32>) -> bool {
-    x.is_none_or(|x| x.is_finite() && x > 0.0)
+/// Returns the rules of a table under the key of the table.
+pub fn with_prefix(table: &str, checks: Vec<Check>) -> impl Iterator<Item = Check> {
+    checks.into_iter().map(move |c| Check { key: Cow::Owned(format!("{table}.{}", c.key)), ..c })
 }
 
-/// Returns whether a value is finite, and 0 or more.
-pub fn from_0(x: f32) -> bool {
-    x.is_finite() && x >= 0.0
+/// Returns whether `rule` holds for `settings`.
+pub fn holds<T>(settings: &T, rule: fn(&T) -> bool) -> bool {
+    rule(settings)
 }

@@ -1,6 +1,5 @@
-//! Settings of a simulation as plain data. The default of each field is the value that a scene file may leave out.
-//!
-//! Fields may be added in a minor version: write `..Default::default()`, also where all present fields are given.
+//! Settings of a simulation as plain data. [`define_settings!`] defines each parameter once: type, default,
+//! unit, range, documentation, and when it has an effect.
 //!
 //! # Example
 //! ```
@@ -13,16 +12,23 @@
 //! ```
 
 mod check;
+mod define;
 mod effects;
 mod neighbours;
+mod parameter;
+mod range;
 mod solver;
 mod volume;
+mod when;
 mod wind;
 
-pub use check::{Check, OutOfRange, Validate, above_0, check, from_0};
+pub use check::{Check, OutOfRange, Validate, check, holds, with_prefix};
+pub use define::define_settings;
 pub use effects::Effects;
 pub use neighbours::Neighbours;
+pub use parameter::{Fields, Parameter, Setting, parameter};
+pub use range::Range;
 pub use solver::{Integrator, Quality, Response, Solver};
 pub use volume::{Volume, VolumeMethod};
+pub use when::When;
 pub use wind::Wind;
-pub(crate) use wind::gusts;

@@ -36,7 +36,7 @@ pub struct List {
 pub const AIR: [List; 2] = [
     List {
         name: "wind_source",
-        label: "Sources of wind",
+        label: "Wind sources",
         one: "Source",
         kinds: &[
             (
@@ -181,7 +181,7 @@ pub fn motion(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let pivot = clip.and_then(|clip| clip.get("pivot")).unwrap_or(&zero);
         rows.field(ui, &key.entry("pivot"), "pivot", Some(pivot));
     }
-    ui.weak("Keys take the place of the scene's own motion, and each change begins the scene anew.");
+    ui.weak("Keys replace the scene's own motion. Each change restarts the scene.");
 }
 
 /// The kind of a collider or tool, if the entry has one.

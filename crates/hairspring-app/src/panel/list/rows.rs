@@ -4,7 +4,7 @@
 use super::super::{Labelled, keys};
 use crate::{
     edit,
-    field::{Field, Kind, of, place},
+    field::{Field, Kind, of, place, tip, unit},
     key::Key,
     session::{Action, Session},
 };
@@ -51,7 +51,7 @@ impl Rows<'_> {
             }
             ui.push_id(name, |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(name_of(field, &back)).on_hover_text(tip(field));
+                    ui.label(name_of(field, &back)).on_hover_text(tip(field, key));
                     self.reset(ui, key, back);
                 });
                 let first = self.first_key(key, name);
@@ -65,9 +65,9 @@ impl Rows<'_> {
                 let left = egui::Layout::left_to_right(egui::Align::Center);
                 ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
                     ui.set_min_width(LABEL);
-                    ui.add(egui::Label::new(name_of(field, &back)).truncate()).on_hover_text(tip(field));
+                    ui.add(egui::Label::new(name_of(field, &back)).truncate()).on_hover_text(tip(field, key));
                 });
-                if let Some(new) = self.control(ui, field, value) {
+                if let Some(new) = self.control(ui, field, key, value) {
                     self.actions.push(Action::Set(key.clone(), new));
                 }
                 self.reset(ui, key, back);
@@ -98,10 +98,16 @@ impl Rows<'_> {
 
     /// The widget of a field. `Some(None)` removes the field. The file's reader checks ranges and rejects
     /// invalid values.
-    fn control(&self, ui: &mut Ui, field: &Field, value: Option<&toml::Value>) -> Option<Option<Value>> {
+    fn control(
+        &self,
+        ui: &mut Ui,
+        field: &Field,
+        key: &Key,
+        value: Option<&toml::Value>,
+    ) -> Option<Option<Value>> {
         match (field.kind, value) {
             (Kind::Joint, value) => {
-                let none = if self.list == "collider" { "the head" } else { "nothing" };
+                let none = if self.list == "collider" { "first joint" } else { "none" };
                 let chosen = value.and_then(toml::Value::as_str);
                 let mut new = None;
                 let combo = egui::ComboBox::from_id_salt(field.name)
@@ -116,37 +122,37 @@ impl Rows<'_> {
                             }
                         }
                     });
-                combo.response.labelled(ui, field.label).on_hover_text(tip(field));
+                combo.response.labelled(ui, field.label).on_hover_text(tip(field, key));
                 new
             }
             (Kind::Maybe(from), value) => {
                 let mut never = value.is_none();
-                if ui.checkbox(&mut never, "never").on_hover_text(tip(field)).changed() {
+                if ui.checkbox(&mut never, "never").on_hover_text(tip(field, key)).changed() {
                     return Some((!never).then(|| from.into()));
                 }
-                number(ui, as_number(value?)?, field.unit, &tip(field)).map(|x| Some(x.into()))
+                number(ui, as_number(value?)?, unit(key), &tip(field, key)).map(|x| Some(x.into()))
             }
             (_, Some(toml::Value::Boolean(on))) => {
                 let mut on = *on;
                 let response = ui.checkbox(&mut on, "").labelled(ui, field.label);
-                response.on_hover_text(tip(field)).changed().then(|| Some(on.into()))
+                response.on_hover_text(tip(field, key)).changed().then(|| Some(on.into()))
             }
             (_, Some(toml::Value::Array(list))) => {
                 let mut changed = false;
                 let mut out = Vec::with_capacity(list.len());
                 for (axis, x) in ["x", "y", "z"].into_iter().zip(list) {
                     let x = as_number(x).unwrap_or(0.0);
-                    let new = number(ui, x, "", &format!("{axis}: {}", tip(field)));
+                    let new = number(ui, x, "", &format!("{axis}: {}", tip(field, key)));
                     changed |= new.is_some();
                     out.push(new.unwrap_or(x));
                 }
-                if !field.unit.is_empty() {
-                    ui.weak(field.unit);
+                if !unit(key).is_empty() {
+                    ui.weak(unit(key));
                 }
                 changed.then(|| Some(Value::from_iter(out)))
             }
             (_, Some(value)) => {
-                number(ui, as_number(value)?, field.unit, &tip(field)).map(|x| Some(x.into()))
+                number(ui, as_number(value)?, unit(key), &tip(field, key)).map(|x| Some(x.into()))
             }
             (_, None) => None,
         }
@@ -157,13 +163,6 @@ impl Rows<'_> {
 fn name_of(field: &Field, back: &Option<Option<Value>>) -> RichText {
     let name = RichText::new(field.label);
     if back.is_some() { name.strong() } else { name }
-}
-
-fn tip(field: &Field) -> String {
-    match field.unit {
-        "" => field.tip.to_owned(),
-        unit => format!("{} [{unit}]", field.tip),
-    }
 }
 
 fn as_number(value: &toml::Value) -> Option<f64> {

@@ -118,36 +118,38 @@ fn what_was_changed_goes_back_to_what_was_opened() {
 }
 
 #[test]
-fn what_begins_the_scene_anew_is_known_of_each_parameter() {
+fn parameters_that_restart_the_scene_are_known() {
     for parameter in parameter::ALL {
         let mut document = [WHOLE, HEAD]
             .map(document)
             .into_iter()
             .find(|d| {
                 let key = parameter.key(0, 0);
-                let maybe = matches!(parameter.kind, Kind::Maybe { .. } | Kind::MaybeColor { .. });
+                let maybe = matches!(parameter.kind(), Kind::Maybe { .. } | Kind::MaybeColor { .. });
                 key.look_up(d.effective()).is_some()
                     || (maybe && key.parent().look_up(d.effective()).is_some())
             })
             .unwrap();
         let now = parameter.key(0, 0).look_up(document.effective()).cloned();
-        let value: Value = match parameter.kind {
+        let value: Value = match parameter.kind() {
             Kind::Number { max, .. } => max.into(),
             Kind::Maybe { from, .. } => from.into(),
             Kind::Count { min, .. } => (min + 1).into(),
             Kind::Guides { .. } => 7.into(),
             Kind::Switch => (!now.unwrap().as_bool().unwrap()).into(),
-            Kind::Choice(words) => {
-                (*words.iter().find(|w| Some(**w) != now.as_ref().unwrap().as_str()).unwrap()).into()
+            Kind::Choice => {
+                let now = now.as_ref().unwrap().as_str();
+                parameter.words().find(|word| Some(*word) != now).unwrap().into()
             }
+            Kind::Bounded => unreachable!("it has become a number with a range"),
             Kind::Color | Kind::MaybeColor { .. } => [0.25, 0.5, 0.75].into_iter().collect(),
             Kind::Vector { .. } => [0.5, 1.5, 2.5].into_iter().collect(),
             Kind::Profile => [1.0, 2.0].into_iter().collect(),
         };
         let edits = edit::of(&mut document, parameter, Some(value), (0, 0)).unwrap();
         let change = document.set_all(edits).unwrap_or_else(|why| panic!("{}: {why}", parameter.name));
-        let anew = if parameter.is_geometry() { Change::Geometry } else { Change::Settings };
-        assert_eq!(change, anew, "{}", parameter.name);
+        let expected = if parameter.is_geometry() { Change::Geometry } else { Change::Settings };
+        assert_eq!(change, expected, "{}", parameter.name);
     }
 }
 
@@ -202,7 +204,7 @@ fn equal_ways_of_a_slider_from_0_are_equal_steps() {
 }
 
 #[test]
-fn hairs_are_counted_anew_when_the_slider_is_let_go_of() {
+fn hairs_are_counted_again_when_the_slider_is_released() {
     let mut panel = panel(HEAD, "on the scalp");
     let rect = panel.harness.query_all_by_role(egui::accesskit::Role::Slider).next().unwrap().rect();
     let begun = panel.session.borrow().begun();
@@ -238,20 +240,21 @@ fn hairs_are_counted_anew_when_the_slider_is_let_go_of() {
 fn a_tooltip_names_range_unit_and_default() {
     let of = |name: &str| {
         let (parameter, head) = (parameter(name), document(HEAD));
-        tip(parameter, parameter.inactive_reason(&head, (0, 0)), parameter.key(0, 0).look_up(head.defaults()))
+        let reason = parameter.inactive_reason(&head, (0, 0));
+        tip(parameter, reason.as_deref(), parameter.key(0, 0).look_up(head.defaults()))
     };
     for (name, line) in [
-        ("damping", "0 to 0.2 s; default 0.015 s\n"),
+        ("damping", "0 or more [s]; default 0.015\n"),
         ("effects.clump", "0 to 1; default 0\n"),
-        ("wind.velocity", "-20 to 20 m/s each; default 0, 0, 0 m/s\n"),
+        ("wind.velocity", "three finite numbers [m/s]; default 0, 0, 0\n"),
         ("solver.segment_contacts", "on or off; default on\n"),
         ("style", "straight, wavy, curly, coily, short-fur; default wavy\n"),
         ("look.melanin", "0 to 1; default none\n"),
-        ("strands", "100 to 200000; default 100000\n"),
+        ("strands", "1 to 10000000; default 100000\n"),
     ] {
         assert!(of(name).contains(line), "{}", of(name));
     }
-    assert!(of("look.melanin_redness").starts_with("No effect unless \"Melanin\""));
+    assert!(of("look.melanin_redness").starts_with("No effect unless \"Melanin\" is set."));
 }
 
 #[test]
