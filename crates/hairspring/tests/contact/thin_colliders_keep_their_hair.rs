@@ -11,7 +11,7 @@ use hairspring::{
     settings::Solver,
     simulation::Simulation,
 };
-use hairspring_test::{FRAME, REST, line, points, roots, translation};
+use hairspring_test::{FRAME, REST, points, roots, translation};
 
 const POINTS: usize = 32;
 const LENGTH: f32 = 0.25;
@@ -22,7 +22,11 @@ fn hair(
     direction: Vec3,
     sag_free: bool,
 ) -> (Simulation, Vec<RigidTransform>) {
-    let groom = Groom::from_strands(starts.map(|root| line(root, root + direction * LENGTH, POINTS)), 40e-6);
+    let strands = starts.map(|root| {
+        let along = |i: usize| direction * (LENGTH * i as f32 / (POINTS - 1) as f32);
+        (0..POINTS).map(move |i| root + along(i)).collect::<Vec<_>>()
+    });
+    let groom = Groom::from_strands(strands, 40e-6);
     let roots = roots(&groom, REST);
     let solver = Solver { sag_free, ..Solver::default() };
     (Simulation::builder(groom).solver(solver).build().unwrap(), roots)

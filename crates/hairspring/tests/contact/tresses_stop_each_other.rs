@@ -14,7 +14,7 @@ use hairspring::{
     settings::{Neighbours, Solver, Volume, VolumeMethod},
     simulation::Simulation,
 };
-use hairspring_test::{REST, line, points, roots, step_by, translation};
+use hairspring_test::{REST, points, roots, step_by, translation};
 use std::sync::Arc;
 
 const METHODS: [VolumeMethod; 2] = [VolumeMethod::Density, VolumeMethod::Incompressible];
@@ -55,7 +55,7 @@ fn disc(count: usize, radius: f32) -> impl Iterator<Item = (f32, f32)> {
 /// A straight strand of about `length`; lengths of adjacent strands differ.
 fn strand(k: usize, root: Vec3, direction: Vec3, length: f32, points: usize) -> Vec<Vec3> {
     let length = length * (0.95 + 0.1 * (k * 7919 % 1000) as f32 / 1000.0);
-    line(root, root + direction * length, points)
+    (0..points).map(|i| root + direction * (length * i as f32 / (points - 1) as f32)).collect()
 }
 
 fn simulation(groom: &Arc<Groom>, material: Material, sag_free: bool) -> Simulation {

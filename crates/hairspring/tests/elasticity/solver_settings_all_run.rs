@@ -6,12 +6,13 @@
 
 use glam::Vec3;
 use hairspring::{
+    air::Air,
     groom::Groom,
     material::{Material, Model},
     settings::{Integrator, Quality, Solver},
-    simulation::Simulation,
+    simulation::{Simulation, StepInput},
 };
-use hairspring_test::{FRAME, step, translation};
+use hairspring_test::{FRAME, translation};
 use std::sync::Arc;
 
 fn strand(curl: f32) -> Vec<Vec3> {
@@ -39,7 +40,13 @@ fn with_every_model_and_quality() {
                 for frame in 0..30 {
                     let x = 0.02 * (std::f32::consts::TAU * 2.0 * frame as f32 * FRAME).sin();
                     let head = translation(Vec3::X * x);
-                    step(&mut simulation, head, &[head; 2], &[]);
+                    let (roots, air) = ([head; 2], Air::default());
+                    let input = StepInput { dt: FRAME, anchor: head, roots: &roots, obstacles: &[], air };
+                    let resets = simulation.step(&input).reset_strands;
+                    assert!(
+                        explicit || resets == 0,
+                        "{integrator:?}, {quality:?}, {model:?}: {resets} resets"
+                    );
                 }
                 let m = simulation.measure(&[]);
                 println!("{integrator:?}, {quality:?}, {model:?}: {m:?}");
