@@ -172,3 +172,20 @@ impl Scene {
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct Readme;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_made_by_code_follows_the_rules_of_scene_files() {
+        let error = |scene: Scene| scene.validate().unwrap_err().to_string();
+        let sheet = SceneSheet { thickness: 0.0, ..SceneSheet::default() };
+        let scene = Scene { sheets: vec![sheet], ..Scene::default() };
+        assert_eq!(error(scene), "sheet 0: `thickness` must be above 0 [m]");
+        let shape = Shape::Sphere { center: Vec3::ZERO, radius: -1.0 };
+        let scene = Scene { colliders: vec![Collider { joint: None, shape }], ..Scene::default() };
+        assert_eq!(error(scene), "collider 0: `shape.sphere.radius` must be above 0 [m]");
+        assert_eq!(Scene::default().validate(), Ok(()));
+    }
+}
