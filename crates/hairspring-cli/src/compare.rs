@@ -10,7 +10,7 @@ use crate::{
     fault::Fault,
     frames,
     input::{Input, Units},
-    interrupt, output,
+    output,
     report::number,
 };
 use clap::Parser;
@@ -163,7 +163,6 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if scene.clip.is_none() && still && scene.charged.is_empty() {
         console.note("nothing moves the hair of this scene; only the free swing shows a difference between the methods");
     }
-    interrupt::listen();
     let frames = ((options.seconds * 60.0).round() as u32).max(play::MOMENTS);
     let seconds = f64::from(frames) / 60.0;
     let swinging = Sample::new(&scene, SWINGING).without_losses();
