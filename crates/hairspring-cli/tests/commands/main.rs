@@ -6,6 +6,7 @@ mod common;
 mod bad_input_gives_one_sentence;
 mod bakes_are_reproducible;
 mod bench_keeps_its_bounds;
+mod compare_shows_two_scenes;
 mod compare_tells_integrators_apart;
 mod grooms_convert_exactly;
 mod info_reports_what_a_file_holds;
