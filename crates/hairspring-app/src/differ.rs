@@ -1,21 +1,44 @@
 //! Lists the differences between two compared scenes, with the labels of the panel.
 
-use crate::parameter;
+use crate::{AppError, effective::effective, key::Key, parameter};
 
 /// Maximum number of differences that are listed. The rest does not fit under a picture and is only counted.
 const MOST: usize = 3;
 
+/// A value that differs between two scenes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// The key of the value, such as `solver.substeps`.
+    pub key: String,
+    /// The two values; `None` where a scene has none.
+    pub values: [Option<toml::Value>; 2],
+}
+
+impl Difference {
+    /// The panel's label of the value, or its key.
+    pub fn label(&self) -> &str {
+        label(&self.key)
+    }
+
+    /// The two values as text.
+    pub fn written(&self) -> [String; 2] {
+        self.values.each_ref().map(|value| written(value.as_ref()))
+    }
+}
+
 /// The differences between the effective values of the left and the right scene, as one line for each.
 pub fn captions(left: &toml::Table, right: &toml::Table) -> [String; 2] {
-    let mut found = Vec::new();
-    let [left, right] = [left, right].map(|t| toml::Value::Table(t.clone()));
-    differences("", Some(&left), Some(&right), &mut found);
+    captions_of(&between(left, right))
+}
+
+/// The same for differences that are known.
+pub fn captions_of(found: &[Difference]) -> [String; 2] {
     if found.is_empty() {
         return ["the same settings".into(), "the same settings".into()];
     }
     let more = found.len().saturating_sub(MOST);
     std::array::from_fn(|side| {
-        let named = found.iter().take(MOST).map(|(key, values)| format!("{}: {}", label(key), values[side]));
+        let named = found.iter().take(MOST).map(|d| format!("{}: {}", d.label(), d.written()[side]));
         let mut text = named.collect::<Vec<_>>().join(", ");
         if more > 0 {
             text.push_str(&format!(", and {more} more"));
@@ -24,12 +47,45 @@ pub fn captions(left: &toml::Table, right: &toml::Table) -> [String; 2] {
     })
 }
 
+/// The differences between two tables of effective values.
+pub fn between(left: &toml::Table, right: &toml::Table) -> Vec<Difference> {
+    let mut found = Vec::new();
+    let [left, right] = [left, right].map(|t| toml::Value::Table(t.clone()));
+    differences("", Some(&left), Some(&right), &mut found);
+    found
+}
+
+/// The differences between two scenes: their settings without geometry ([`hairspring_io::read_settings`]) and
+/// the texts of their files. Defaults count as values. The name of a scene does not count.
+///
+/// # Errors
+/// Returns an error for a text that is not TOML.
+pub fn scene_differences(
+    scenes: [&hairspring_scene::Scene; 2],
+    texts: [&str; 2],
+) -> Result<Vec<Difference>, AppError> {
+    let parse = |text: &str| text.parse::<toml::Table>().map_err(|why| AppError::new(why.to_string()));
+    let said = [parse(texts[0])?, parse(texts[1])?];
+    let effective = [0, 1].map(|k| effective(scenes[k], &said[k]));
+    let mut found = between(&effective[0], &effective[1]);
+    // Files, props and motions are not settings. Of the texts, only what has no effective value counts.
+    let known = |key: &str| {
+        let covered = ["name", "material", "builtin"];
+        let first = key.split(['.', '[']).next().unwrap_or_default();
+        let key: Option<Key> = key.parse().ok();
+        covered.contains(&first) || key.is_some_and(|k| effective.iter().any(|t| k.look_up(t).is_some()))
+    };
+    found.retain(|d| d.key != "name");
+    found.extend(between(&said[0], &said[1]).into_iter().filter(|d| !known(&d.key)));
+    Ok(found)
+}
+
 /// Descends into tables and lists of tables; everything else is compared as a value.
 fn differences(
     key: &str,
     left: Option<&toml::Value>,
     right: Option<&toml::Value>,
-    found: &mut Vec<(String, [String; 2])>,
+    found: &mut Vec<Difference>,
 ) {
     use toml::Value::{Array, Table};
     match (left, right) {
@@ -48,7 +104,7 @@ fn differences(
                 differences(&format!("{key}[{k}]"), a.get(k), b.get(k), found);
             }
         }
-        (a, b) => found.push((key.to_owned(), [a, b].map(written))),
+        (a, b) => found.push(Difference { key: key.to_owned(), values: [a.cloned(), b.cloned()] }),
     }
 }
 
@@ -94,5 +150,19 @@ mod tests {
         assert_eq!(named("a = 1", "a = 1"), ["the same settings"; 2]);
         let many = named("a = 1\nb = 1\nc = 1\nd = 1\ne = 1", "a = 2\nb = 2\nc = 2\nd = 2\ne = 2");
         assert_eq!(many[1], "a: 2, b: 2, c: 2, and 2 more");
+    }
+
+    #[test]
+    fn defaults_count_as_values_and_files_as_differences() {
+        let texts = [
+            "name = \"one\"\n[builtin]\nstrands = 500\n[solver]\nsubsteps = 4\n",
+            "[builtin]\nstrands = 500\n[wind]\ngust = 0.5\n[clip]\nfile = \"walk.bvh\"\n",
+        ];
+        let scenes = texts.map(|text| hairspring_io::read_settings("a.toml".as_ref(), text).unwrap());
+        let found = scene_differences([&scenes[0], &scenes[1]], texts).unwrap();
+        let keys: Vec<&str> = found.iter().map(|d| d.key.as_str()).collect();
+        assert!(keys.contains(&"wind.gust"), "{keys:?}");
+        assert!(keys.iter().any(|k| k.starts_with("clip")), "{keys:?}");
+        assert!(!keys.iter().any(|k| ["name", "solver.substeps", "builtin.strands"].contains(k)), "{keys:?}");
     }
 }

@@ -15,7 +15,7 @@
 //! | `handle`, `carried` | handles in the picture, and the current transforms of objects |
 //! | `painter` | the renderers of the hair |
 //! | `panel` | the panels around the picture |
-//! | `record`, `letters`, `script` | recordings and text on them; scripted sessions |
+//! | `record`, `side_by_side`, `letters`, `script` | recordings, compared pictures and text on them; scripted sessions |
 //! | `memory` | returns unused memory to the system |
 //! | `app`, `desktop` | the window, and the message if it cannot open |
 //!
@@ -57,11 +57,13 @@ mod reading;
 mod record;
 mod script;
 mod session;
+mod side_by_side;
 mod snapshot;
 mod view;
 
 pub use app::{App, Options};
-pub use document::Document;
+pub use differ::{Difference, captions_of, scene_differences};
+pub use document::{Document, set_in_text};
 pub use drag_limiter::Push;
 pub use error::AppError;
 pub use painter::Drawn;
@@ -69,6 +71,7 @@ pub use pointer_collider::Pushed;
 pub use script::Line;
 pub use script::parse as read_script;
 pub use session::{Action, Session};
+pub use side_by_side::SideBySide;
 
 use eframe::egui;
 

@@ -4,9 +4,9 @@
 use crate::{
     AppError,
     destination::destination,
-    letters::Letters,
     orbit::Orbit,
     session::{Action, Session},
+    side_by_side::SideBySide,
     snapshot::{Snapshot, StageSnapshot, ViewParameters},
 };
 use hairspring_view::{
@@ -28,14 +28,6 @@ const RATE: u32 = 30;
 const STEPS: u64 = 2;
 /// Size of a recorded frame [pixels].
 const SIZE: [u32; 2] = [1280, 720];
-/// Gap between two compared pictures [pixels].
-const GAP: u32 = 4;
-/// Height of the captions below them [pixels].
-const CAPTION: u32 = 28;
-/// Inset of the text [pixels].
-const INSET: u32 = 10;
-/// Gray of the gap and of the captions.
-const DARK: u8 = 24;
 
 /// Kind of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -257,7 +249,7 @@ struct Sink {
     path: PathBuf,
     clip: Option<ClipWriter>,
     brush: Brush,
-    letters: Letters,
+    side_by_side: SideBySide,
 }
 
 impl Sink {
@@ -281,7 +273,7 @@ impl Sink {
             Some(gpu) => Brush::Gpu(Box::new(GpuRenderer::new(&gpu))),
             None => Brush::Cpu(Box::new(Renderer::new(SIZE[0], SIZE[1]))),
         };
-        Ok(Self { path, clip, brush, letters: Letters::default() })
+        Ok(Self { path, clip, brush, side_by_side: SideBySide::default() })
     }
 
     /// Draws and writes until it receives the end. `said` is called with the result of each frame and at the
@@ -327,20 +319,11 @@ impl Sink {
         sides: [(&StageSnapshot, &ViewParameters); 2],
         captions: &[String; 2],
     ) -> Result<Image, AppError> {
-        let size = [(SIZE[0] - GAP) / 2, SIZE[1] - CAPTION];
+        let [(left, first), (right, second)] = sides;
+        let size = SideBySide::half(SIZE);
+        let halves = [self.brush.draw(left, first, size)?, self.brush.draw(right, second, size)?];
         let mut all = Image::new(SIZE[0], SIZE[1]);
-        all.rgb.fill(DARK);
-        for (k, (scenery, sight)) in sides.into_iter().enumerate() {
-            let left = k as u32 * (size[0] + GAP);
-            let half = self.brush.draw(scenery, sight, size)?;
-            let bytes = 3 * size[0] as usize;
-            for (row, from) in half.rgb.chunks_exact(bytes).enumerate() {
-                let at = 3 * (row * SIZE[0] as usize + left as usize);
-                all.rgb[at..at + bytes].copy_from_slice(from);
-            }
-            let place = [left + INSET, size[1] + (CAPTION - INSET) / 3];
-            self.letters.write(&mut all, place, size[0] - 2 * INSET, &captions[k]);
-        }
+        self.side_by_side.draw(&mut all, 0, SIZE, halves.each_ref(), captions);
         Ok(all)
     }
 }

@@ -15,7 +15,8 @@ Examples:
   hairspring render shot.toml -o f.####.png --frames 20-80 --resume
   hairspring bake shot.toml -o hair.####.hair            write one groom file per frame
   hairspring bench --strands 100000 --json               measure the speed
-  hairspring compare --report compare.html               compare the integrators
+  hairspring compare a.toml b.toml -o compare.mp4        two scenes side by side, and their differences
+  hairspring compare --methods --report compare.html     compare the integrators
   hairspring validate --report validation.html           compare the simulation with closed-form solutions
 
 Results go to standard output, progress and notes to standard error.
@@ -26,11 +27,12 @@ Exit codes:
   2    invalid argument
   3    a file was not found or could not be read
   4    a file's content is wrong
-  5    a file could not be written
+  5    a file or standard output could not be written
   6    the scene cannot be simulated
   7    the machine lacks what the command needs: a desktop, a GPU
   70   internal error
-  130  interrupted (Ctrl-C): the current frame was completed, no partial file is left";
+  130  interrupted (Ctrl-C, SIGTERM): no partial file is left. A run that writes frames completes the
+       current one first; a second interrupt ends it at once";
 
 /// Heading of the options that every command has.
 const EVERYWHERE: &str = "Global options";

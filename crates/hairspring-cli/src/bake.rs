@@ -5,13 +5,15 @@ use crate::{
     fault::Fault,
     frames::{self, FrameRange},
     input::Input,
-    interrupt, output,
+    interrupt,
+    manifest::{Manifest, Origin},
+    output,
     play::{Ending, play},
     totals::{self, Totals},
 };
 use clap::Parser;
 use glam::{Vec2, Vec3};
-use hairspring_io::{Format, ReadOptions, Strands, read_groom, write_strands};
+use hairspring_io::{Format, Strands, write_strands};
 use hairspring_scene::stage::{FrameRate, Stage};
 use serde_json::json;
 use std::{
@@ -46,8 +48,10 @@ pub struct Options {
     #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
     fps: FrameRate,
 
-    /// Skip frames that already have a complete file. They are still simulated, so that the result is
-    /// bit-identical to an uninterrupted run. Use the same scene and options as before
+    /// Skip frames that an earlier run has finished. They are still simulated, so that the result is
+    /// bit-identical to an uninterrupted run. The manifest beside the frames (NAME.bake.hair.json) says what
+    /// they were made from; a run with another scene, input file, option, version or instruction set is
+    /// refused. Finished frames are checked by length and checksum
     #[arg(long)]
     resume: bool,
 
@@ -71,25 +75,44 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         );
         return Err(Fault::Usage(text));
     }
+    if options.resume && !output::is_sequence(pattern) {
+        let text = "--resume needs numbered files, such as NAME.####.hair; a single file cannot be resumed";
+        return Err(Fault::Usage(text.into()));
+    }
     output::try_folder(&output::frame_path(pattern, 1))?;
-    let scene = options.input.scene(console)?;
+    let (scene, files) = options.input.scene_and_files(console)?;
     let range = options.frames.unwrap_or(FrameRange::whole(scene.clip.as_ref(), options.fps));
-    interrupt::listen();
+    let mut wanted: Vec<u32> = range.numbers().collect();
+    let mut manifest = None;
+    if output::is_sequence(pattern) {
+        let mut all = options.input.options().to_vec();
+        all.push(("fps", Some(options.fps.to_string())));
+        let begun = Manifest::begin(pattern, Origin::new("bake", &all, files), options.resume, console)?;
+        if options.resume {
+            wanted = begun.unfinished(&wanted, pattern, console);
+        }
+        manifest = Some(begun);
+    }
     let mut stage = Stage::new(scene)?;
     console.note_all(stage.thin_mesh());
     let mut sheaf = Sheaf::new(&stage, console);
-    let mut wanted: Vec<u32> = range.numbers().collect();
-    if options.resume {
-        wanted.retain(|n| !sheaf.is_baked(&output::frame_path(pattern, *n)));
+    interrupt::finish_current("the current frame");
+    if let Some(manifest) = &mut manifest {
+        manifest.will_replace(&wanted, pattern);
+        manifest.write()?;
     }
     let mut totals = Totals::new();
     let last = wanted.last().copied().unwrap_or(0);
     let mut progress = console.progress("simulating", last);
-    let ending = play(&mut stage, last, options.fps, |frame, stage, report| {
+    let outcome = play(&mut stage, last, options.fps, |frame, stage, report| {
         totals.stepped(frame, report);
         if wanted.binary_search(&frame).is_ok() {
             let began = Instant::now();
-            sheaf.write(&output::frame_path(pattern, frame), stage)?;
+            let path = output::frame_path(pattern, frame);
+            sheaf.write(&path, stage)?;
+            if let Some(manifest) = &mut manifest {
+                manifest.finished(&path)?;
+            }
             totals.written(1, began.elapsed());
         }
         progress.step(|| {
@@ -99,8 +122,12 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             )
         });
         Ok(())
-    })?;
+    });
     drop(progress);
+    // Also after an error, so that finished frames count.
+    let listed = manifest.as_mut().map_or(Ok(()), Manifest::write);
+    let ending = outcome?;
+    listed?;
     if let Ending::Stopped(after) = ending {
         let text = format!(
             "stopped after frame {after} of {}; run the same command with --resume to continue",
@@ -185,11 +212,5 @@ impl Sheaf {
             root_uvs: &self.root_uvs,
         };
         write_strands(path, strands).map(drop).map_err(Fault::writing)
-    }
-
-    /// Whether a complete file with the same strands and points exists.
-    fn is_baked(&self, path: &Path) -> bool {
-        let options = ReadOptions { scale: Some(1.0), up: None };
-        read_groom(path, &options).is_ok_and(|l| l.value.offsets == self.offsets)
     }
 }

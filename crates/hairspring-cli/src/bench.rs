@@ -6,7 +6,6 @@ mod table;
 use crate::{
     console::{Console, say},
     fault::Fault,
-    interrupt,
     totals::grouped,
 };
 use clap::Parser;
@@ -172,7 +171,6 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         );
         return Err(Fault::Usage(text));
     }
-    interrupt::listen();
     if let Some(path) = &options.scene {
         return scene::run(path, (frames, options.rest), options.json, console);
     }
@@ -218,7 +216,6 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
                 measure.inside_points
             )
         });
-        go_on(frame, frames)?;
     }
     drop(progress);
     let (fastest, median, p95) = (times.rank(0.0), times.rank(0.5), times.rank(0.95));
@@ -317,17 +314,6 @@ fn say_scene(options: &Options) {
     let (strands, points) = (options.strands as usize, options.points as usize);
     let all = grouped(strands * points);
     say(format_args!("scene    {} strands x {points} points = {all} points", grouped(strands)));
-}
-
-/// Returns an error if the user has interrupted the bench.
-fn go_on(frame: u32, frames: u32) -> Result<(), Fault> {
-    match interrupt::asked() {
-        false => Ok(()),
-        true => {
-            let text = format!("stopped after frame {frame} of {frames}; nothing was measured");
-            Err(Fault::Interrupted(text))
-        }
-    }
 }
 
 /// Returns an error if `name` is not one of the valid names in `there`.

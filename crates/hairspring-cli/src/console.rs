@@ -1,9 +1,11 @@
 //! Messages to the user: results on standard output, everything else on standard error.
 
+use crate::fault::Fault;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::{
     fmt::Display,
-    io::{IsTerminal, Write, stderr, stdout},
+    io::{self, IsTerminal, Write, stderr, stdout},
+    sync::{Mutex, PoisonError},
 };
 
 /// How much is printed.
@@ -13,9 +15,36 @@ pub struct Console {
     verbose: bool,
 }
 
-/// Prints a line of the result. A closed output (`| head`) is not an error.
+/// The first error of standard output.
+static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
+
+/// Prints a line of the result. After an error (a closed pipe, a full disk) nothing more is printed;
+/// [`finish`] returns the error, so that a command still completes its files.
 pub fn say(line: impl Display) {
-    let _ = writeln!(stdout(), "{line}");
+    let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
+    if unprinted.is_none() {
+        *unprinted = writeln!(stdout(), "{line}").err();
+    }
+}
+
+/// Completes standard output.
+///
+/// # Errors
+/// Returns the first error of standard output.
+pub fn finish() -> Result<(), Fault> {
+    let first = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner).take();
+    let why = first.or_else(|| stdout().flush().err());
+    why.map_or(Ok(()), |why| Err(unprinted(why)))
+}
+
+/// Describes an error of standard output.
+pub fn unprinted(why: io::Error) -> Fault {
+    Fault::Unwritable(format!("the result could not be printed to standard output: {why}"))
+}
+
+/// Prints a note that does not depend on the settings of the console.
+pub fn note(line: impl Display) {
+    let _ = writeln!(stderr(), "note: {line}");
 }
 
 /// Prints a line about an error.
@@ -32,7 +61,7 @@ impl Console {
     /// Prints a note that the user should know about.
     pub fn note(self, line: impl Display) {
         if !self.quiet {
-            let _ = writeln!(stderr(), "note: {line}");
+            note(line);
         }
     }
 

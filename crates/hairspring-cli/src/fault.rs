@@ -17,7 +17,7 @@ pub enum Fault {
     Unreadable(String),
     /// A file's content is wrong.
     Content(String),
-    /// A file could not be written.
+    /// A file, or standard output, could not be written.
     Unwritable(String),
     /// The scene cannot be simulated.
     Scene(String),
@@ -40,7 +40,7 @@ impl Fault {
             Self::Unwritable(_) => 5,
             Self::Scene(_) => 6,
             Self::Lacking(_) => 7,
-            Self::Interrupted(_) => 130,
+            Self::Interrupted(_) => crate::interrupt::CODE,
         }
     }
 

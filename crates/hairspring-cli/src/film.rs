@@ -1,10 +1,10 @@
 //! Writes pictures and clips on a separate thread while the next frame is simulated and drawn.
 
-use crate::{fault::Fault, output};
-use hairspring_view::{ClipWriter, Image, OutputError, write_jpeg, write_png};
+use crate::{fault::Fault, manifest::Manifest, output};
+use hairspring_view::{ClipWriter, Image, write_jpeg, write_png};
 use std::{
     path::PathBuf,
-    sync::mpsc::{Receiver, SyncSender, channel, sync_channel},
+    sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel},
     thread::JoinHandle,
     time::{Duration, Instant},
 };
@@ -14,7 +14,7 @@ pub enum Sink {
     /// All frames in one clip.
     Clip(Box<ClipWriter>),
     /// Each frame as a separate picture; `#` signs in the name stand for its number.
-    Pictures(PathBuf),
+    Pictures(PathBuf, Box<Manifest>),
     /// One frame as a picture.
     Still(PathBuf, u32),
 }
@@ -30,7 +30,7 @@ pub struct Film {
     jobs: Option<SyncSender<Job>>,
     /// Images whose memory can be reused.
     spare: Receiver<Image>,
-    thread: Option<JoinHandle<Result<Duration, OutputError>>>,
+    thread: Option<JoinHandle<Result<Duration, Fault>>>,
 }
 
 impl Film {
@@ -41,26 +41,10 @@ impl Film {
         let (jobs, todo) = sync_channel(1);
         let (done, spare) = channel();
         let thread = std::thread::spawn(move || {
-            let mut busy = Duration::ZERO;
-            for job in todo {
-                let began = Instant::now();
-                match job {
-                    Job::Frame(number, image) => {
-                        for sink in &mut sinks {
-                            sink.write(number, &image)?;
-                        }
-                        // After the last frame nobody receives the image.
-                        let _ = done.send(image);
-                    }
-                    Job::Finish => {
-                        for sink in sinks.drain(..) {
-                            sink.finish()?;
-                        }
-                    }
-                }
-                busy += began.elapsed();
-            }
-            Ok(busy)
+            let outcome = work(&mut sinks, todo, &done);
+            // Also after an error or an interrupt, so that finished pictures count.
+            let listed = sinks.iter_mut().try_for_each(Sink::list);
+            outcome.and_then(|busy| listed.map(|()| busy))
         });
         Self { jobs: Some(jobs), spare, thread: Some(thread) }
     }
@@ -87,11 +71,36 @@ impl Film {
     fn join(&mut self) -> Result<Duration, Fault> {
         self.jobs = None;
         match self.thread.take().map(JoinHandle::join) {
-            Some(Ok(outcome)) => Ok(outcome?),
+            Some(Ok(outcome)) => outcome,
             Some(Err(panic)) => std::panic::resume_unwind(panic),
             None => Ok(Duration::ZERO),
         }
     }
+}
+
+/// Writes all frames; returns the time that it took.
+fn work(sinks: &mut Vec<Sink>, todo: Receiver<Job>, done: &Sender<Image>) -> Result<Duration, Fault> {
+    let mut busy = Duration::ZERO;
+    sinks.iter_mut().try_for_each(Sink::list)?;
+    for job in todo {
+        let began = Instant::now();
+        match job {
+            Job::Frame(number, image) => {
+                for sink in &mut *sinks {
+                    sink.write(number, &image)?;
+                }
+                // After the last frame nobody receives the image.
+                let _ = done.send(image);
+            }
+            Job::Finish => {
+                for sink in sinks.drain(..) {
+                    sink.finish()?;
+                }
+            }
+        }
+        busy += began.elapsed();
+    }
+    Ok(busy)
 }
 
 impl Drop for Film {
@@ -105,22 +114,36 @@ impl Drop for Film {
 }
 
 impl Sink {
-    fn write(&mut self, number: u32, image: &Image) -> Result<(), OutputError> {
+    fn write(&mut self, number: u32, image: &Image) -> Result<(), Fault> {
         match self {
-            Self::Clip(clip) => clip.push(image),
-            Self::Pictures(pattern) => write_png(&output::frame_path(pattern, number), image),
+            Self::Clip(clip) => clip.push(image)?,
+            Self::Pictures(pattern, manifest) => {
+                let path = output::frame_path(pattern, number);
+                write_png(&path, image)?;
+                manifest.finished(&path)?;
+            }
             Self::Still(path, frame) if *frame == number => match output::extension(path).as_str() {
-                "jpg" => write_jpeg(path, image),
-                _ => write_png(path, image),
+                "jpg" => write_jpeg(path, image)?,
+                _ => write_png(path, image)?,
             },
-            Self::Still(..) => Ok(()),
+            Self::Still(..) => {}
+        }
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<(), Fault> {
+        self.list()?;
+        match self {
+            Self::Clip(clip) => Ok(clip.finish()?),
+            Self::Pictures(..) | Self::Still(..) => Ok(()),
         }
     }
 
-    fn finish(self) -> Result<(), OutputError> {
+    /// Writes the manifest of pictures.
+    fn list(&mut self) -> Result<(), Fault> {
         match self {
-            Self::Clip(clip) => clip.finish(),
-            Self::Pictures(_) | Self::Still(..) => Ok(()),
+            Self::Pictures(_, manifest) => manifest.write(),
+            Self::Clip(_) | Self::Still(..) => Ok(()),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The input of a simulation: a scene file, or a groom file on its own.
 
-use crate::{console::Console, fault::Fault, frames};
+use crate::{console::Console, fault::Fault, frames, manifest::Inputs};
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 use hairspring::groom::Repairs;
@@ -61,24 +61,43 @@ pub struct Input {
 }
 
 impl Input {
+    /// Options that change the result, for a manifest: see [`crate::manifest::Origin`].
+    pub fn options(&self) -> [(&'static str, Option<String>); 4] {
+        let guides = |guides| match guides {
+            Guides::All => "all".into(),
+            Guides::FromGroom => "file".into(),
+            Guides::Count(n) => n.to_string(),
+        };
+        let up = |up| if up == Up::Y { "y" } else { "z" };
+        [
+            ("scale", self.units.scale.map(|scale| scale.to_string())),
+            ("up", self.units.up.map(|axis| up(axis).into())),
+            ("guides", self.guides.map(guides)),
+            ("substeps", self.substeps.map(|n| n.to_string())),
+        ]
+    }
+
+    /// Reads the scene and records the files that it consists of.
+    pub fn scene_and_files(&self, console: Console) -> Result<(Scene, Inputs), Fault> {
+        let (scene, files) = Inputs::record(&self.path, || self.scene(console));
+        Ok((scene?, files))
+    }
+
     /// Reads the scene.
     pub fn scene(&self, console: Console) -> Result<Scene, Fault> {
         let path = &self.path;
         let mut scene = if Format::of(path) == Some(Format::Scene) {
             if self.units.scale.is_some() || self.units.up.is_some() {
-                let text =
-                    "--scale and --up apply to a groom file; a scene sets them for each file that it names";
-                return Err(Fault::Usage(text.into()));
+                return Err(Fault::Usage(UNITS_OF_A_SCENE.into()));
             }
             let loaded = read_scene(path).map_err(|e| Fault::reading(e, path))?;
             tell(&loaded.notes, &loaded.repairs, console);
             loaded.value
         } else {
             let loaded = read_groom(path, &self.units.into()).map_err(|e| match e {
-                hairspring_io::Error::Unsupported { .. } if Format::of(path).is_none() => Fault::Usage(format!(
-                    "{}: unknown extension; a scene is read from .toml, a groom from .hair, .tfx or .data",
-                    path.display()
-                )),
+                hairspring_io::Error::Unsupported { .. } if Format::of(path).is_none() => {
+                    unknown_extension(path)
+                }
                 other => Fault::reading(other, path),
             })?;
             tell(&loaded.notes, &loaded.repairs, console);
@@ -92,6 +111,18 @@ impl Input {
         }
         Ok(scene)
     }
+}
+
+/// Why units cannot be set for a scene.
+pub const UNITS_OF_A_SCENE: &str =
+    "--scale and --up apply to a groom file; a scene sets them for each file that it names";
+
+/// The error for a file that is neither a scene nor a groom.
+pub fn unknown_extension(path: &Path) -> Fault {
+    Fault::Usage(format!(
+        "{}: unknown extension; a scene is read from .toml, a groom from .hair, .tfx or .data",
+        path.display()
+    ))
 }
 
 /// A scene with only a groom: fixed roots and gravity.

@@ -1,18 +1,50 @@
-//! Ctrl-C: the run ends after the current frame. A second Ctrl-C ends it at once.
+//! Ctrl-C, SIGTERM and SIGHUP end a run with [`CODE`]. No partial file is left, neither under its final name
+//! nor under a temporary one.
+//!
+//! At first a signal ends the program at once. A command that keeps what is finished calls [`finish_current`];
+//! from there on the first signal ends it after the current frame, and the second one at once.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use crate::console;
+use std::sync::{
+    Mutex, PoisonError,
+    atomic::{AtomicBool, Ordering},
+};
+
+/// Exit code of an interrupted run.
+pub const CODE: u8 = 130;
 
 static ASKED: AtomicBool = AtomicBool::new(false);
 
-/// Installs the handler. From here on an interrupt requests a stop after the current frame.
-pub fn listen() {
-    let asked_twice = || ASKED.swap(true, Ordering::Relaxed);
-    // If the system has no such signal, the run cannot be stopped between frames.
+/// What the first signal waits for.
+static CURRENT: Mutex<Option<&'static str>> = Mutex::new(None);
+
+/// Installs the handler. From here on a signal ends the program at once. `quiet`: no note after the first
+/// signal of a run that waits for its frame.
+pub fn listen(quiet: bool) {
+    // If the system has no such signal, the run can only be killed.
     let _ = ctrlc::set_handler(move || {
-        if asked_twice() {
-            std::process::exit(130);
+        // The lock is held until the exit, so that the run does not begin to write frames meanwhile.
+        let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(what) = *current
+            && !ASKED.swap(true, Ordering::Relaxed)
+        {
+            if !quiet {
+                console::note(format_args!("stopping after {what}; a second interrupt stops at once"));
+            }
+            return;
         }
+        hairspring_file::remove_pending_files();
+        match *current {
+            Some(what) => console::complain(&format_args!("stopped without finishing {what}")),
+            None => console::complain(&"stopped: nothing was written"),
+        }
+        std::process::exit(CODE.into());
     });
+}
+
+/// From here on the first signal requests a stop after `what`, such as `the current frame`.
+pub fn finish_current(what: &'static str) {
+    *CURRENT.lock().unwrap_or_else(PoisonError::into_inner) = Some(what);
 }
 
 /// Whether the user has requested a stop.

@@ -14,6 +14,7 @@ mod info;
 mod input;
 mod interrupt;
 mod live;
+mod manifest;
 mod output;
 mod picture;
 mod play;
@@ -26,13 +27,20 @@ use args::{Cli, Command};
 use clap::Parser;
 use console::Console;
 use fault::Fault;
-use std::process::ExitCode;
+use std::{io::Write, process::ExitCode};
 
 fn main() -> ExitCode {
     fault::report_panics();
-    let outcome = std::panic::catch_unwind(|| run(Cli::parse()));
+    let outcome = std::panic::catch_unwind(|| {
+        let cli = match Cli::try_parse() {
+            Ok(cli) => cli,
+            Err(refused) => return explain(&refused),
+        };
+        run(cli)?;
+        console::finish().map(|()| ExitCode::SUCCESS)
+    });
     match outcome {
-        Ok(Ok(())) => ExitCode::SUCCESS,
+        Ok(Ok(code)) => code,
         Ok(Err(fault)) => {
             console::complain(&fault);
             ExitCode::from(fault.code())
@@ -42,7 +50,18 @@ fn main() -> ExitCode {
     }
 }
 
+/// Prints the help, the version, or what is wrong with the command line.
+fn explain(refused: &clap::Error) -> Result<ExitCode, Fault> {
+    let printed = refused.print().and_then(|()| std::io::stdout().flush());
+    if refused.use_stderr() {
+        return Ok(ExitCode::from(Fault::Usage(String::new()).code()));
+    }
+    printed.map_err(console::unprinted)?;
+    Ok(ExitCode::SUCCESS)
+}
+
 fn run(cli: Cli) -> Result<(), Fault> {
+    interrupt::listen(cli.quiet);
     if let Some(threads) = cli.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads as usize)

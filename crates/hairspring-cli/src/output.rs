@@ -2,10 +2,7 @@
 
 use crate::fault::Fault;
 use hairspring_view::sequence_path;
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 /// The path of frame `number`: `#` signs are replaced by the number. A name without them is returned as it
 /// is.
@@ -40,18 +37,8 @@ pub fn try_folder(path: &Path) -> Result<(), Fault> {
     })
 }
 
-/// Writes a whole file: to a temporary file first, which is then renamed, so that no partial file is ever
-/// left.
+/// Writes a whole file: it is complete and on the disk before it appears under its name.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), Fault> {
-    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let write = || {
-        let mut builder = tempfile::Builder::new();
-        // Temporary files are private by default. This one gets the usual permissions, limited by the umask.
-        #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        let mut file = builder.prefix(".hairspring-").tempfile_in(folder)?;
-        file.write_all(bytes)?;
-        file.persist(path).map_err(|e| e.error)
-    };
-    write().map(drop).map_err(|e| Fault::Unwritable(format!("{} could not be written: {e}", path.display())))
+    hairspring_file::write_atomically(path, |out| out.write_all(bytes))
+        .map_err(|e| Fault::Unwritable(format!("{} could not be written: {e}", path.display())))
 }

@@ -114,6 +114,11 @@ impl Studio {
         self.width_scale
     }
 
+    /// Takes over the camera and the width of hairs of `other`.
+    pub fn look_like(&mut self, other: &Self) {
+        (self.start, self.camera, self.width_scale) = (other.start, other.camera, other.width_scale);
+    }
+
     /// Rotates the camera around the vertical axis through its target. `share` is a fraction of a full turn
     /// from the initial position, counterclockwise as seen from above.
     pub fn turn(&mut self, share: f32) {

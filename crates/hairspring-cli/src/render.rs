@@ -6,7 +6,9 @@ use crate::{
     film::{Film, Sink},
     frames::{self, FrameRange},
     input::Input,
-    interrupt, output,
+    interrupt,
+    manifest::{Manifest, Origin},
+    output,
     picture::{Studio, View},
     play::{Ending, play},
     totals::{self, Totals},
@@ -16,7 +18,7 @@ use hairspring_scene::{
     Scene,
     stage::{FrameRate, Stage},
 };
-use hairspring_view::{ClipWriter, OutputError, read_png};
+use hairspring_view::{ClipWriter, OutputError};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
@@ -56,7 +58,10 @@ pub struct Options {
     #[arg(long)]
     turntable: bool,
 
-    /// Skip pictures that already exist, complete and in this size. Their frames are still simulated
+    /// Skip pictures that an earlier run has finished; their frames are still simulated. The manifest beside
+    /// the pictures (NAME.render.png.json) says what they were made from; a run with another scene, input
+    /// file, option, version or instruction set is refused. Finished pictures are checked by length and
+    /// checksum
     #[arg(long)]
     resume: bool,
 
@@ -78,7 +83,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         let text = "--turntable needs a clip (turn.mp4) or numbered pictures (turn.####.png)";
         return Err(Fault::Usage(text.into()));
     }
-    let scene = options.input.scene(console)?;
+    let (scene, files) = options.input.scene_and_files(console)?;
     let range = match (kind, options.frames) {
         (Kind::Still, None) => FrameRange { first: 1, last: 1 },
         (Kind::Still, Some(range)) if range.count() > 1 => {
@@ -93,12 +98,17 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         (_, None) => FrameRange::whole(scene.clip.as_ref(), options.fps),
     };
     let mut wanted: Vec<u32> = range.numbers().collect();
-    if options.resume {
-        wanted.retain(|n| !is_drawn(&output::frame_path(&options.output, *n), options.view.size));
-    }
     let sink = match kind {
         Kind::Clip => Sink::Clip(clip(&options.output, options.view.size, options.fps.hertz())?),
-        Kind::Pictures => Sink::Pictures(options.output.clone()),
+        Kind::Pictures => {
+            let origin = Origin::new("render", &all_options(options, range), files);
+            let mut manifest = Manifest::begin(&options.output, origin, options.resume, console)?;
+            if options.resume {
+                wanted = manifest.unfinished(&wanted, &options.output, console);
+            }
+            manifest.will_replace(&wanted, &options.output);
+            Sink::Pictures(options.output.clone(), Box::new(manifest))
+        }
         Kind::Still => Sink::Still(options.output.clone(), range.first),
     };
     let turn = options.turntable.then_some(range);
@@ -146,7 +156,6 @@ pub fn shoot(
     sinks: Vec<Sink>,
     console: Console,
 ) -> Result<(Stage, Totals, Ending), Fault> {
-    interrupt::listen();
     let mut stage = Stage::new(scene)?;
     console.note_all(stage.thin_mesh());
     let mut studio = Studio::new(view, &mut stage)?;
@@ -160,6 +169,7 @@ pub fn shoot(
     if let Some(card) = studio.card() {
         console.note(format_args!("drawing on {card}"));
     }
+    interrupt::finish_current("the current frame");
     let mut film = Film::new(sinks);
     let mut totals = Totals::new();
     let last = wanted.last().copied().unwrap_or(0);
@@ -224,7 +234,23 @@ impl Kind {
     }
 }
 
-/// Whether a complete picture of this size exists.
-fn is_drawn(path: &Path, (width, height): (u32, u32)) -> bool {
-    read_png(path).is_ok_and(|p| (p.width, p.height) == (width, height))
+/// The options that change pictures, for their manifest.
+fn all_options(options: &Options, range: FrameRange) -> Vec<(&'static str, Option<String>)> {
+    let View { size, camera, target, fov, hair_width, gpu } = &options.view;
+    let point = |p: glam::Vec3| format!("{},{},{}", p.x, p.y, p.z);
+    let set = |flag: bool| flag.then(|| "set".to_owned());
+    let mut all = options.input.options().to_vec();
+    all.extend([
+        ("fps", Some(options.fps.to_string())),
+        ("size", Some(format!("{}x{}", size.0, size.1))),
+        ("camera", camera.map(point)),
+        ("target", target.map(point)),
+        ("fov", fov.map(|fov| fov.to_string())),
+        ("hair-width", hair_width.map(|width| width.to_string())),
+        ("gpu", set(*gpu)),
+        ("turntable", set(options.turntable)),
+        // The angle of a turntable depends on the range; other frames do not.
+        ("frames", options.turntable.then(|| format!("{}-{}", range.first, range.last))),
+    ]);
+    all
 }

@@ -159,7 +159,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if options.table {
         let mut cases: Vec<&'static Case> = jobs.iter().map(|job| job.case).collect();
         cases.dedup_by_key(|case| case.name);
-        interrupt::listen();
+        interrupt::finish_current("the current cells");
         return table::run(&cases, console);
     }
     let outcomes: Vec<Outcome> =

@@ -229,7 +229,9 @@ pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
         let text = format!("the file has {size} bytes, more than the limit of {MAX_FILE}");
         return Err(Problem::limit(crate::Place::Whole, text).in_file(path));
     }
-    std::fs::read(path).map_err(unreadable)
+    let data = std::fs::read(path).map_err(unreadable)?;
+    crate::observe::report(path, &data);
+    Ok(data)
 }
 
 /// Reads a file next to `path`: in its folder or below, never above.

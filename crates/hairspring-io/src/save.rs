@@ -3,7 +3,7 @@
 use crate::{Error, Format, Result, Strands, hair, tfx, usc};
 use hairspring::groom::Groom;
 use std::{
-    io::{self, BufWriter, Write},
+    io::{self, Write},
     path::Path,
 };
 
@@ -76,23 +76,11 @@ fn varies_along(groom: &Groom) -> bool {
     })
 }
 
-/// Writes a file atomically. `write` fills a temporary file in the folder of `path`, which is then renamed.
-/// The finished file has the permissions of a new file.
+/// Writes a file atomically. `write` fills a temporary file in the folder of `path`, which is written to the
+/// disk and then renamed. The finished file has the permissions of a new file.
 ///
 /// # Errors
 /// Returns the error of `write` or of the system. Nothing is left behind in that case.
 pub fn atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".hairspring-");
-    // Temporary files are private by default. The finished file gets the usual permissions, limited by the
-    // umask.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder)?;
-    let mut out = BufWriter::with_capacity(1 << 20, file);
-    write(&mut out)?;
-    let file = out.into_inner().map_err(|e| e.into_error())?;
-    file.persist(path).map_err(|e| e.error)?;
-    Ok(())
+    hairspring_file::write_atomically(path, write)
 }

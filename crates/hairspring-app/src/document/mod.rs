@@ -24,6 +24,21 @@ pub fn builtin_text(style: &str, strands: u32, guides: u32) -> String {
     )
 }
 
+/// Writes `value` at `key` in the text of a scene file, such as `solver.substeps` or `groom[0].look.roughness`.
+/// A value that is not TOML is written as a string, so that names need no quotes.
+///
+/// # Errors
+/// Returns an error if the text is not TOML or has no place for the key. The value is not checked.
+pub fn set_in_text(text: &str, key: &str, value: &str) -> Result<String, AppError> {
+    let mut edited = parsed(text)?;
+    let place: Key = key.parse().map_err(|why: String| AppError::new(why))?;
+    let value = value.parse::<Value>().unwrap_or_else(|_| value.into());
+    match place.write(edited.as_table_mut(), Some(value)) {
+        true => Ok(edited.to_string()),
+        false => Err(AppError::new(format!("the scene has no {key}"))),
+    }
+}
+
 /// A scene file being edited.
 pub struct Document {
     /// The path of the file. Files that the scene names are relative to its folder.

@@ -1,6 +1,6 @@
 //! `hairspring bench --scene`: the time of each stage of a scene's frames, and the contacts of its hair.
 
-use super::{Times, go_on};
+use super::Times;
 use crate::{
     console::{Console, say},
     fault::Fault,
@@ -91,7 +91,6 @@ pub(super) fn run(
         substeps = report.step.substeps.max(substeps);
         reset += report.step.reset_strands;
         progress.step(|| format!("frame {frame}: {:.2} ms", whole.0[frame as usize - 1] * 1e3));
-        go_on(frame, frames)?;
     }
     drop(progress);
     let measure = stage.measure();

@@ -1,116 +1,349 @@
-//! Text of the report about each method: its equations, their source, and what to look for.
+//! `hairspring compare --methods`: every integrator on the same hair.
 
+mod lessons;
+mod play;
+mod report;
+mod swing;
+
+use super::Options;
+use crate::{
+    console::{Console, say},
+    fault::Fault,
+    input::Input,
+    output,
+    report::number,
+};
 use hairspring::settings::Integrator;
+use hairspring_scene::{
+    Guides, Scene,
+    builtin::{self, BuiltinOptions, Style},
+    stage::Stage,
+};
+use hairspring_validate::swing::{Sample, TILT};
+use play::Played;
+use serde_json::{Value, json};
+use swing::{LongestStep, Swung};
 
-/// The explanation of a method for a reader who is new to it.
-pub struct Lesson {
-    /// Name of the method.
-    pub title: &'static str,
-    /// Equations of a step.
-    pub equations: &'static str,
-    /// Source of the equations.
-    pub source: &'static str,
-    /// Why the method behaves as it does; HTML.
-    pub text: &'static str,
+/// Largest |ℓ/L − 1| of a method that counts as stable [1]. Above it, a segment is more than twice as long as
+/// it should be, and the method has diverged.
+const BOUND: f64 = 1.0;
+
+/// Strands in the free swing.
+const SWINGING: usize = 64;
+
+/// Strands in the search for the longest stable step: one tile. A method that needs steps of a microsecond
+/// takes hundreds of thousands of steps here.
+const STEPPING: usize = 8;
+
+/// Strands of the built-in head, and how many of them are simulated.
+const HEAD: (u32, u32) = (4_000, 300);
+
+/// Default length of the comparison [s].
+const SECONDS: f32 = 3.0;
+
+/// Longest comparison [s].
+const LONGEST: f32 = 600.0;
+
+/// The results of one integrator.
+struct Trial {
+    integrator: Integrator,
+    played: Played,
+    swung: Swung,
+    longest: LongestStep,
 }
 
-/// The springs, which all methods except follow the leader share.
-pub const SPRINGS: &str = "\
-<h2>The springs</h2>
-<p>A strand is a chain of points x₀ … x₍ₙ₋₁₎ with masses m. The scalp moves the first two; every other point obeys Newton, m a = f. A spring
-along each segment pulls its ends together or pushes them apart:</p>
-<pre>f = k (ℓ − L) û       ℓ the current length, L the rest length, û the direction,  k = EA/L</pre>
-<p>A bending spring at each joint pulls the change of tangent r = u₂ − u₁ − d back to zero, where d is the change at rest:</p>
-<pre>E = ½ B |r|²          B = EI/L</pre>
-<p>E is Young's modulus of keratin, A the cross-section of a fiber, and I = πr⁴/4: hair is hard to stretch and easy to bend. A segment of hair
-vibrates lengthwise at about 10⁵ rad/s, while the strand swings at about 10 rad/s as a whole. A system is called <em>stiff</em> if its fastest
-motion is this much faster than the one that matters. The methods below differ in how they handle stiffness. <small>Sams 2014, §3.1; Lengyel 2012; bending springs
-after Bergou et al. 2008, <i>Discrete Elastic Rods</i>.</small></p>
-";
-
-/// The question that the methods answer.
-pub const QUESTION: &str = "\
-<h2>The methods</h2>
-<p>A method computes the positions x⁺ and velocities v⁺ at a time h later from the current x and v. The acceleration a = f/m is known at the
-current positions. An <em>explicit</em> method uses it; an <em>implicit</em> method uses the acceleration at the new positions. <small>Sams 2014, §3.2.</small></p>
-";
-
-/// Contact, which is the same for all methods.
-pub const CONTACT: &str = "\
-<h2>Contact</h2>
-<p>Contact is the same for all methods and follows the computation of new positions. A point inside the head is moved to the nearest position
-outside, its inward velocity is removed, and friction reduces its motion along the surface by up to μ times that correction. <small>Sams 2014, §3.3; Liu et al.
-2013.</small></p>
-";
-
-/// Returns the explanation of a method.
-pub fn lesson(integrator: Integrator) -> Lesson {
-    match integrator {
-        Integrator::ExplicitEuler => Lesson {
-            title: "Explicit Euler",
-            equations: "x⁺ = x + h v\nv⁺ = v + h a(x, v)",
-            source: "Sams 2014, §3.2; Müller et al. 2008, Real Time Physics, §3.3",
-            text: "Each step follows the tangent and so always leaves a circular orbit to the outside: the amplitude of a spring \
-                   with angular frequency ω grows by √(1 + h²ω²) in every step. No step length avoids this; a shorter step only \
-                   makes the growth slower. For the lengthwise ω of hair, the step would have to be far below a microsecond. The \
-                   method is included to show why the others exist.",
-        },
-        Integrator::Verlet => Lesson {
-            title: "Verlet",
-            equations: "a  = f(x, v) / m\nx⁺ = 2x − x⁻ + h² a  =  x + h v + h² a\nv⁺ = (x⁺ − x) / h",
-            source: "Sams 2014, §3.2; Müller et al. 2008, Real Time Physics, §3.3",
-            text: "The velocity is not stored but derived from the last two positions, so that a force acts on the position at \
-                   once. This small change keeps orbits closed: energy oscillates around its value and does not grow, as long as \
-                   h ω &lt; 2. Beyond that bound the method blows up like explicit Euler. With ω of the shortest segment the \
-                   bound is about h &lt; L √(ρ/E), the time that sound takes to cross the segment. This is a few microseconds, so \
-                   a picture needs thousands of steps.",
-        },
-        Integrator::BackwardEuler => Lesson {
-            title: "Backward Euler (the default)",
-            equations: "x⁺ = x + h v⁺\nv⁺ = v + h a(x⁺, v⁺)\n\nlinearized, for Δ = x⁺ − x:   (M/h² + D/h + K) Δ = M v/h + f(x)",
-            source: "Sams 2014, §3.2; Baraff & Witkin 1998, Large Steps in Cloth Simulation; Tariq & Bavoil 2010; Goldenthal et al. 2007",
-            text: "The unknown is on both sides, so a linear system must be solved. A force reaches at most two points further, \
-                   so the matrix is a narrow band, and one sweep down and up the strand solves it exactly. The amplitude of a \
-                   spring with angular frequency ω now shrinks by 1/√(1 + h²ω²): motion that is too fast for the step dies out \
-                   instead of growing. The price is that the swing is damped too: it loses more energy the longer the step is. \
-                   Full stiffness is too much even for one linear solve. A softer spring takes its place, and a projection then \
-                   corrects the lengths to within 1 %.",
-        },
-        Integrator::Bdf2 => Lesson {
-            title: "BDF2",
-            equations: "x⁺ = (4x − x⁻ + 2h v⁺) / 3\nv⁺ = (4v − v⁻ + 2h a(x⁺, v⁺)) / 3",
-            source: "Choi & Ko 2002, Stable but Responsive Cloth, eq. 17",
-            text: "This is the backward differentiation formula of second order. It uses the two previous steps, so that the \
-                   error of a slow swing decreases with h² instead of h and its amplitude is kept. The system to solve is that of \
-                   backward Euler with 9/4 of the mass, and costs the same.",
-        },
-        Integrator::LocalGlobal => Lesson {
-            title: "Local–global",
-            equations: "local:   d = L û for every segment alone, d = its turn at rest for every joint\nglobal:  (M/h² + Σ k AᵀA) x⁺ = M x̂/h² + Σ k Aᵀ d        x̂ = x + h v + h² g\nagain, ten times",
-            source: "Liu et al. 2013, Fast Simulation of Mass-Spring Systems",
-            text: "This is the same implicit step, seen as a search for the positions of least energy. The local step finds for \
-                   every spring on its own where it would be at rest. The global step reconciles all of them with a constant \
-                   matrix that is factored once. No iteration can overshoot, so the method cannot blow up, but ten iterations do \
-                   not converge. The remaining error acts as friction against rotation, and as stretch if steps are long. Bending \
-                   works only in a frame that is carried along the strand, without twist.",
-        },
-        Integrator::Ftl => Lesson {
-            title: "Follow the leader",
-            equations: "p  = x + h v + h² g\nfrom root to tip:  x⁺ᵢ₊₁ = x⁺ᵢ + L û(x⁺ᵢ → pᵢ₊₁)\nv⁺ = (x⁺ − x) / h",
-            source: "Sams 2014, §2.1.2; Müller, Kim, Chentanez 2012, Fast Simulation of Inextensible Hair and Fur, §4.1",
-            text: "Every point is moved to its rest distance from the previous point, once, from root to tip. All lengths are \
-                   exact until contact moves a point, and no step is too long. But a point never pulls its leader back. It moves \
-                   as if the leader were infinitely heavier, which turns the chain into a whip: the points near the tip gain \
-                   energy from nowhere. There is no bending stiffness, so curls straighten.",
-        },
-        Integrator::Dftl => Lesson {
-            title: "Dynamic follow the leader",
-            equations: "as follow the leader, with d the correction p → x⁺ of a point, and then\nv⁺ᵢ = (x⁺ᵢ − xᵢ) / h − s dᵢ₊₁ / h        s = 0.9",
-            source: "Müller, Kim, Chentanez 2012, §4.2",
-            text: "The correction of a point is subtracted from the velocity of its leader, as if the point had pulled the leader \
-                   back. The whip effect is gone, but a damping remains that depends on the step. The method is very cheap, keeps \
-                   all lengths, and suits fur that needs no shape of its own.",
-        },
-        other => Lesson { title: other.name(), equations: "", source: "", text: "" },
+impl Trial {
+    /// Whether the method kept the scene stable.
+    fn stable(&self) -> bool {
+        // A stretch that is NaN is not within the bound.
+        self.played.reset_strands == 0 && self.played.stretch_max <= BOUND
     }
+
+    /// Number of points that one thread can simulate in real time at the longest stable step.
+    fn points_in_real_time(&self) -> Option<f64> {
+        self.longest.seconds().map(|h| h / (self.played.ns * 1e-9))
+    }
+}
+
+/// The setup of a comparison.
+struct Setting {
+    name: String,
+    simulated_strands: usize,
+    simulated_points: usize,
+    strands: usize,
+    substeps: u32,
+    seconds: f64,
+    simd: String,
+    swinging: Sample,
+    stepping: Sample,
+}
+
+/// Runs the command.
+pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
+    let integrators = integrators(&options.integrators)?;
+    let seconds = options.seconds.unwrap_or(SECONDS);
+    if seconds > LONGEST {
+        return Err(Fault::Usage(format!("--seconds is at most {LONGEST}")));
+    }
+    if let Some(path) = &options.report {
+        output::try_folder(path)?;
+    }
+    let scene = scene(options, console)?;
+    let still =
+        scene.wind.velocity.length() == 0.0 && scene.wind_sources.is_empty() && !scene.turbulence.is_on();
+    if scene.clip.is_none() && still && scene.charged.is_empty() {
+        console.note("nothing moves the hair of this scene; only the free swing shows a difference between the methods");
+    }
+    let frames = ((seconds * 60.0).round() as u32).max(play::MOMENTS);
+    let seconds = f64::from(frames) / 60.0;
+    let swinging = Sample::new(&scene, SWINGING).without_losses();
+    let stepping = Sample::new(&scene, STEPPING);
+
+    let draw = options.report.is_some();
+    let mut setting = None;
+    let mut played = Vec::with_capacity(integrators.len());
+    let mut progress = console.progress("playing the scene", frames * integrators.len() as u32);
+    for &integrator in &integrators {
+        let mut scene = scene.clone();
+        scene.solver.integrator = integrator;
+        let stage = Stage::new(scene)?;
+        setting.get_or_insert_with(|| Setting {
+            name: stage.scene().name.clone(),
+            simulated_strands: stage.simulated_strands().0,
+            simulated_points: stage.simulated_points().0,
+            strands: stage.simulated_strands().1,
+            substeps: stage.scene().solver.substeps,
+            seconds,
+            simd: stage.instruction_set(),
+            swinging: swinging.clone(),
+            stepping: stepping.clone(),
+        });
+        played.push(play::play(stage, frames, draw, &mut progress)?);
+    }
+    drop(progress);
+    let Some(setting) = setting else { return Err(Fault::Usage("no integrator is named".into())) };
+
+    let mut trials = Vec::with_capacity(integrators.len());
+    let mut progress = console.progress_in(
+        "swinging, and searching for the longest step",
+        integrators.len() as u32,
+        "methods",
+    );
+    for (&integrator, played) in integrators.iter().zip(played) {
+        let swung = swing::swing(&swinging, integrator, setting.substeps, seconds);
+        let longest = swing::longest_step(&stepping, integrator);
+        progress.step(|| format!("{}: longest stable step {}", integrator.name(), longest.told()));
+        trials.push(Trial { integrator, played, swung, longest });
+    }
+    drop(progress);
+
+    if let Some(path) = &options.report {
+        output::write_whole(path, report::page(&setting, &trials).as_bytes())?;
+    }
+    if options.json {
+        say(as_json(&setting, &trials, options));
+    } else {
+        print(&setting, &trials);
+        if let Some(path) = &options.report {
+            say(format_args!("wrote    {}", path.display()));
+        }
+    }
+    Ok(())
+}
+
+/// Returns the integrators of these names, each once. If there are no names, returns all of them.
+fn integrators(names: &[String]) -> Result<Vec<Integrator>, Fault> {
+    if names.is_empty() {
+        return Ok(Integrator::ALL.to_vec());
+    }
+    let mut chosen = Vec::new();
+    for name in names.iter().map(|n| n.trim()) {
+        let found = Integrator::ALL.into_iter().find(|i| i.name() == name).ok_or_else(|| {
+            let there = Integrator::ALL.map(Integrator::name).join(", ");
+            Fault::Usage(format!("unknown integrator '{name}'; expected one of: {there}"))
+        })?;
+        if !chosen.contains(&found) {
+            chosen.push(found);
+        }
+    }
+    Ok(chosen)
+}
+
+fn scene(options: &Options, console: Console) -> Result<Scene, Fault> {
+    let Options { units, guides, substeps, .. } = *options;
+    if let Some(path) = &options.a {
+        return Input { path: path.clone(), units, guides, substeps }.scene(console);
+    }
+    if units.scale.is_some() || units.up.is_some() {
+        return Err(Fault::Usage("--scale and --up apply to a groom file; none is given".into()));
+    }
+    let mut scene = builtin::scene(&BuiltinOptions {
+        strands: HEAD.0,
+        guides: guides.unwrap_or(Guides::Count(HEAD.1)),
+        ..BuiltinOptions::new(Style::Straight)
+    });
+    // Eyebrows and eyelashes are too short and stiff to be informative, and the shortest segment determines
+    // the longest step.
+    scene.grooms.truncate(1);
+    scene.solver.substeps = substeps.unwrap_or(scene.solver.substeps);
+    Ok(scene)
+}
+
+fn as_json(setting: &Setting, trials: &[Trial], options: &Options) -> Value {
+    let one = |t: &Trial| {
+        json!({
+            "integrator": t.integrator.name(),
+            "stable": t.stable(),
+            "reset_strands": t.played.reset_strands,
+            "stretch_mean": t.played.stretch_mean,
+            "stretch_max": t.played.stretch_max,
+            "swing_stretch_max": t.swung.stretch_max,
+            "energy_drift": t.swung.drift,
+            "ns_per_point_substep": t.played.ns,
+            "longest_stable_step_s": t.longest.seconds(),
+            "points_in_real_time": t.points_in_real_time(),
+        })
+    };
+    json!({
+        "scene": setting.name,
+        "simulated_strands": setting.simulated_strands,
+        "simulated_points": setting.simulated_points,
+        "substeps": setting.substeps,
+        "seconds": setting.seconds,
+        "threads": rayon::current_num_threads(),
+        "simd": setting.simd,
+        "stable_stretch_bound": BOUND,
+        "swinging_strands": setting.swinging.strand_count(),
+        "stepping_strands": setting.stepping.strand_count(),
+        "report": options.report,
+        "integrators": trials.iter().map(one).collect::<Vec<_>>(),
+    })
+}
+
+/// Column headers of the table.
+const HEADS: [&str; 8] = [
+    "integrator",
+    "stable",
+    "stretch, mean",
+    "worst",
+    "energy drift",
+    "ns/point/substep",
+    "longest step",
+    "points in real time",
+];
+
+/// A row of the table, as text.
+fn row(t: &Trial) -> [String; 8] {
+    let stable = match (t.stable(), t.played.reset_strands) {
+        (true, _) => "yes".into(),
+        (false, 0) => "no".into(),
+        (false, n) => format!("no, {} resets", crate::totals::grouped(n)),
+    };
+    [
+        t.integrator.name().into(),
+        stable,
+        percent(t.played.stretch_mean),
+        percent(t.played.stretch_max),
+        t.swung.drift.map_or("blew up".into(), |d| format!("{:+.0} %", d * 100.0)),
+        format!("{:.1}", t.played.ns),
+        t.longest.told(),
+        t.points_in_real_time().map_or("none".into(), |n| crate::totals::grouped(two_digits(n) as usize)),
+    ]
+}
+
+fn print(setting: &Setting, trials: &[Trial]) {
+    let grouped = crate::totals::grouped;
+    say(format_args!(
+        "scene    {}: {} of {} strands simulated, {} points",
+        setting.name,
+        grouped(setting.simulated_strands),
+        grouped(setting.strands),
+        grouped(setting.simulated_points)
+    ));
+    say(format_args!(
+        "each     {} s of the scene, {} substeps per 1/60 s, {} threads, {}",
+        number(setting.seconds),
+        setting.substeps,
+        rayon::current_num_threads(),
+        setting.simd
+    ));
+    let rows: Vec<[String; 8]> =
+        std::iter::once(HEADS.map(String::from)).chain(trials.iter().map(row)).collect();
+    let widths: [usize; 8] =
+        std::array::from_fn(|c| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0));
+    for row in &rows {
+        let cells = row.iter().zip(widths).enumerate().map(|(c, (cell, width))| match c {
+            // Numbers are right-aligned.
+            2.. => format!("{cell:>width$}"),
+            _ => format!("{cell:<width$}"),
+        });
+        say(cells.collect::<Vec<_>>().join("  "));
+    }
+    say(format_args!("{}", limits(setting)));
+}
+
+/// Describes the figures, for the help of the command.
+pub fn figures() -> String {
+    let names = Integrator::ALL.map(Integrator::name).join(", ");
+    let (shortest, longest) = (duration(swing::SHORTEST), duration(swing::LONGEST));
+    format!(
+        "\
+Integrators: {names}
+
+The figures of each integrator, as JSON keys of `--methods`:
+  stable                    in the scene, no strand became non-finite and no segment reached twice its length
+  reset_strands             strands that became non-finite and were reset, summed over all frames
+  stretch_mean              mean of |l/L - 1| over segments and frames
+  stretch_max               maximum over segments and frames; null if it was not finite
+  swing_stretch_max         maximum in the free swing, which has no contact; null if it blew up
+  energy_drift              energy gained or lost in the free swing, over the energy that falling can release;
+                            null if it blew up
+  ns_per_point_substep      wall time x threads / (points x substeps), the median frame of the scene
+  longest_stable_step_s     {longest} is the longest tried; null if not even {shortest} is stable
+  points_in_real_time       points that one thread simulates in real time at that step; null if there is none"
+    )
+}
+
+/// Explains the terms of the table.
+fn limits(setting: &Setting) -> String {
+    format!(
+        "Stable: no strand became non-finite and no segment reached twice its length. Energy drift: of a free swing of {} strands in \
+         {} s, gravity turned by {TILT}°, over the energy that falling can release. Longest step: the longest at which {} strands, \
+         with a shortest segment of {} mm that sound crosses in {}, stay within that bound for {} s and {} steps; between {} and {}.",
+        setting.swinging.strand_count(),
+        number(setting.seconds),
+        setting.stepping.strand_count(),
+        number(two_digits(f64::from(setting.stepping.shortest_segment()) * 1e3)),
+        duration(setting.stepping.sound_time()),
+        number(swing::WATCHED),
+        swing::STEPS,
+        duration(swing::SHORTEST),
+        duration(swing::LONGEST),
+    )
+}
+
+/// Formats a fraction in percent; ∞ if it is not finite.
+fn percent(share: f64) -> String {
+    match share {
+        s if !s.is_finite() => "∞".into(),
+        s if s >= 1e6 => format!("{:.0e} %", s * 100.0),
+        s if s >= 10.0 => format!("{} %", crate::totals::grouped((s * 100.0) as usize)),
+        s if s >= 0.1 => format!("{:.0} %", s * 100.0),
+        s => format!("{:.3} %", s * 100.0),
+    }
+}
+
+/// Formats a time in a suitable unit.
+fn duration(seconds: f64) -> String {
+    let (value, unit) = match seconds {
+        s if s < 1e-3 => (s * 1e6, "µs"),
+        s => (s * 1e3, "ms"),
+    };
+    format!("{} {unit}", number(two_digits(value)))
+}
+
+/// Rounds to two significant digits, which is the precision that is known.
+fn two_digits(x: f64) -> f64 {
+    let power = 10f64.powf(x.log10().floor() - 1.0);
+    if x > 0.0 { (x / power).round() * power } else { x }
 }

@@ -1,4 +1,4 @@
-//! Promise: `hairspring compare` simulates the same hair with each integrator and reports the results under
+//! Promise: `hairspring compare --methods` simulates the same hair with each integrator and reports the results under
 //! stable keys. Its report is one self-contained file.
 
 use crate::common::{fail, json, names, succeed};
@@ -32,8 +32,16 @@ fn folder() -> tempfile::TempDir {
 #[test]
 fn explicit_steps_are_a_thousand_times_shorter_than_implicit_ones() {
     let folder = folder();
-    let arguments =
-        ["compare", "few.tfx", "--seconds", "0.1", "--integrators", "verlet,backward-euler", "--json"];
+    let arguments = [
+        "compare",
+        "few.tfx",
+        "--methods",
+        "--seconds",
+        "0.1",
+        "--integrators",
+        "verlet,backward-euler",
+        "--json",
+    ];
     let found = json(&succeed(folder.path(), &arguments));
     assert_eq!((&found["simulated_strands"], &found["substeps"]), (&24.into(), &4.into()));
     let list = found["integrators"].as_array().unwrap();
@@ -55,8 +63,17 @@ fn explicit_steps_are_a_thousand_times_shorter_than_implicit_ones() {
 #[test]
 fn the_page_is_one_file() {
     let folder = folder();
-    let arguments =
-        ["compare", "few.tfx", "--seconds", "0.1", "--integrators", "dftl,bdf2", "--report", "page.html"];
+    let arguments = [
+        "compare",
+        "few.tfx",
+        "--methods",
+        "--seconds",
+        "0.1",
+        "--integrators",
+        "dftl,bdf2",
+        "--report",
+        "page.html",
+    ];
     let stdout = succeed(folder.path(), &arguments);
     assert!(stdout.contains("dftl") && stdout.contains("bdf2") && stdout.contains("page.html"), "{stdout}");
     assert_eq!(names(folder.path()), ["few.tfx", "page.html"]);
@@ -75,11 +92,11 @@ fn the_page_is_one_file() {
 #[test]
 fn invalid_arguments_are_refused() {
     for (arguments, code, part) in [
-        (&["compare", "--integrators", "magic"][..], 2, "'magic'"),
-        (&["compare", "--seconds", "1e9"], 2, "--seconds"),
-        (&["compare", "--scale", "2"], 2, "--scale"),
-        (&["compare", "nowhere.hair"], 3, "nowhere.hair"),
-        (&["compare", "--report", "no/where.html"], 5, "no"),
+        (&["compare", "--methods", "--integrators", "magic"][..], 2, "'magic'"),
+        (&["compare", "--methods", "--seconds", "1e9"], 2, "--seconds"),
+        (&["compare", "--methods", "--scale", "2"], 2, "--scale"),
+        (&["compare", "nowhere.hair", "--methods"], 3, "nowhere.hair"),
+        (&["compare", "--methods", "--report", "no/where.html"], 5, "no"),
     ] {
         let stderr = fail(Path::new("."), arguments, code);
         assert!(stderr.lines().count() == 1 && stderr.contains(part), "{arguments:?}: {stderr}");

@@ -4,11 +4,9 @@
 //! a demuxer and a decoder that share no code with the writer, and has every frame. A resumed sequence
 //! equals an uninterrupted one, and a still equals the frame of the same number.
 
-use crate::common::{contents, fail, names, succeed, text, write_groom, write_scene};
+use crate::common::{contents, fail, names, play, succeed, text, write_groom, write_scene};
 use hairspring_test::{data, farthest};
 use hairspring_view::{Image, read_png};
-use openh264::{decoder::Decoder, formats::YUVSource};
-use std::{fs::File, io::BufReader, path::Path};
 
 const SIZE: [&str; 2] = ["--size", "160x96"];
 
@@ -19,39 +17,6 @@ fn drawn_pixels(image: &Image) -> usize {
         row.chunks(3).filter(|p| p.iter().zip(&row[..3]).any(|(a, b)| a.abs_diff(*b) > 24)).count()
     })
     .sum()
-}
-
-/// The number of frames that decode, and the clip's size.
-fn play(path: &Path) -> (u32, (u16, u16)) {
-    let file = File::open(path).unwrap();
-    let size = file.metadata().unwrap().len();
-    let mut reader = mp4::Mp4Reader::read_header(BufReader::new(file), size).unwrap();
-    let (&id, track) = reader.tracks().iter().next().unwrap();
-    let (count, size) = (track.sample_count(), (track.width(), track.height()));
-    let mut unit = vec![];
-    for set in [track.sequence_parameter_set().unwrap(), track.picture_parameter_set().unwrap()] {
-        unit.extend([0, 0, 0, 1]);
-        unit.extend(set);
-    }
-    let mut decoder = Decoder::new().unwrap();
-    let mut shown = 0;
-    for n in 1..=count {
-        let sample = reader.read_sample(id, n).unwrap().unwrap();
-        let mut rest = &sample.bytes[..];
-        while rest.len() > 4 {
-            let (length, after) = rest.split_first_chunk::<4>().unwrap();
-            let (bytes, next) = after.split_at(u32::from_be_bytes(*length) as usize);
-            unit.extend([0, 0, 0, 1]);
-            unit.extend(bytes);
-            rest = next;
-        }
-        if let Some(yuv) = decoder.decode(&unit).unwrap() {
-            assert_eq!(yuv.dimensions(), (size.0.into(), size.1.into()));
-            shown += 1;
-        }
-        unit.clear();
-    }
-    (shown, size)
 }
 
 /// The same still on the graphics card. It is skipped where the machine has neither a card nor a software
@@ -106,7 +71,10 @@ fn a_scene_renders_as_numbered_pictures_that_resume() {
         [&["render", "scene.toml", "-o", "frames/f.##.png", "--frames", "2-6", "--json"], &SIZE[..]].concat();
     let report = crate::common::json(&succeed(folder.path(), &render));
     assert_eq!((&report["frames"], &report["strands"]), (&5.into(), &300.into()));
-    assert_eq!(names(&frames), ["f.02.png", "f.03.png", "f.04.png", "f.05.png", "f.06.png"]);
+    assert_eq!(
+        names(&frames),
+        ["f.02.png", "f.03.png", "f.04.png", "f.05.png", "f.06.png", "f.render.png.json"]
+    );
     let whole = contents(&frames);
     assert!(whole[0].1 != whole[4].1, "nothing moved");
 

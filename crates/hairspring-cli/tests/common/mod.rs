@@ -5,8 +5,11 @@
 
 use glam::Vec3;
 use hairspring::groom::Groom;
+use openh264::{decoder::Decoder, formats::YUVSource};
 use std::{
     ffi::OsStr,
+    fs::File,
+    io::BufReader,
     path::{Path, PathBuf},
     process::{Command, Output, Stdio},
 };
@@ -97,6 +100,39 @@ pub fn write_scene(folder: &Path, strands: usize) {
 /// Parses JSON that the program printed.
 pub fn json(text: &str) -> serde_json::Value {
     serde_json::from_str(text).unwrap_or_else(|e| panic!("{e}: {text:?}"))
+}
+
+/// The number of frames of a clip that decode, and its size.
+pub fn play(path: &Path) -> (u32, (u16, u16)) {
+    let file = File::open(path).unwrap();
+    let size = file.metadata().unwrap().len();
+    let mut reader = mp4::Mp4Reader::read_header(BufReader::new(file), size).unwrap();
+    let (&id, track) = reader.tracks().iter().next().unwrap();
+    let (count, size) = (track.sample_count(), (track.width(), track.height()));
+    let mut unit = vec![];
+    for set in [track.sequence_parameter_set().unwrap(), track.picture_parameter_set().unwrap()] {
+        unit.extend([0, 0, 0, 1]);
+        unit.extend(set);
+    }
+    let mut decoder = Decoder::new().unwrap();
+    let mut shown = 0;
+    for n in 1..=count {
+        let sample = reader.read_sample(id, n).unwrap().unwrap();
+        let mut rest = &sample.bytes[..];
+        while rest.len() > 4 {
+            let (length, after) = rest.split_first_chunk::<4>().unwrap();
+            let (bytes, next) = after.split_at(u32::from_be_bytes(*length) as usize);
+            unit.extend([0, 0, 0, 1]);
+            unit.extend(bytes);
+            rest = next;
+        }
+        if let Some(yuv) = decoder.decode(&unit).unwrap() {
+            assert_eq!(yuv.dimensions(), (size.0.into(), size.1.into()));
+            shown += 1;
+        }
+        unit.clear();
+    }
+    (shown, size)
 }
 
 /// A path as text.

@@ -31,12 +31,20 @@ use std::path::{Path, PathBuf};
 /// range, a named file that is missing or malformed, or parts that do not fit together (a missing joint or
 /// motion).
 pub fn read_scene(path: &Path) -> Result<Loaded<Scene>> {
+    read_scene_text(path, &scene_text(path)?)
+}
+
+/// Reads the text of a scene file, which is not checked.
+///
+/// # Errors
+/// Returns an error if the file is missing, unreadable or of another kind.
+pub fn scene_text(path: &Path) -> Result<String> {
     if Format::of(path) != Some(Format::Scene) {
         let reason = "unknown extension; a scene file ends in .toml".into();
         return Err(Error::Unsupported { path: path.to_owned(), reason });
     }
     let data = load::bytes_of(path)?;
-    read_scene_text(path, &as_text(&data))
+    Ok(as_text(&data).into_owned())
 }
 
 /// Reads the text of a scene file that does not need to be saved, as if it were in `path`. Files are named

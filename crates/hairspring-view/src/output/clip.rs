@@ -3,6 +3,7 @@
 
 use super::{OutputError, beside, keep, yuv::Planes};
 use crate::image::Image;
+use hairspring_file::PendingFile;
 use muxide::api::{Muxer, MuxerBuilder, VideoCodec};
 use openh264::{
     OpenH264API,
@@ -27,7 +28,7 @@ const BITS_PER_PIXEL: f64 = 0.3;
 /// writer that is dropped before that leaves nothing behind. Compressed frames are kept in memory until then.
 pub struct ClipWriter {
     path: PathBuf,
-    temporary: tempfile::NamedTempFile,
+    temporary: PendingFile,
     size: (u32, u32),
     fps: f64,
     encoder: Encoder,
@@ -129,7 +130,6 @@ impl ClipWriter {
             .into_writer()
             .into_inner()
             .map_err(|e| OutputError::File { path: self.path.clone(), source: e.into_error() })?;
-        file.sync_all().map_err(|source| OutputError::File { path: self.path.clone(), source })?;
         drop(file);
         keep(self.temporary, &self.path)
     }

@@ -18,7 +18,7 @@ const QUALITY: u8 = 85;
 /// picture is 0 or more than 65,535 pixels.
 pub fn write_jpeg(path: &Path, image: &Image) -> Result<(), OutputError> {
     let mut file = beside(path)?;
-    let mut out = BufWriter::new(file.as_file_mut());
+    let mut out = BufWriter::new(&mut file);
     JpegEncoder::new_with_quality(&mut out, QUALITY)
         .encode(&image.rgb, image.width, image.height, ExtendedColorType::Rgb8)
         .map_err(|e| match e {

@@ -10,6 +10,7 @@ pub use clip::ClipWriter;
 pub use jpeg::write_jpeg;
 pub use png::{encode_png, read_png, sequence_path, write_png};
 
+use hairspring_file::PendingFile;
 use std::path::{Path, PathBuf};
 
 /// Why a picture or clip could not be written or read.
@@ -42,20 +43,11 @@ pub enum OutputError {
 }
 
 /// Creates a temporary file in the folder of `path`.
-fn beside(path: &Path) -> Result<tempfile::NamedTempFile, OutputError> {
-    let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut builder = tempfile::Builder::new();
-    // Temporary files are private by default. The finished file gets the usual permissions, limited by the
-    // umask.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder
-        .prefix(".hairspring-")
-        .tempfile_in(folder)
-        .map_err(|source| OutputError::File { path: path.into(), source })
+fn beside(path: &Path) -> Result<PendingFile, OutputError> {
+    PendingFile::create(path).map_err(|source| OutputError::File { path: path.into(), source })
 }
 
 /// Renames a finished temporary file to its final name.
-fn keep(file: tempfile::NamedTempFile, path: &Path) -> Result<(), OutputError> {
-    file.persist(path).map(drop).map_err(|e| OutputError::File { path: path.into(), source: e.error })
+fn keep(file: PendingFile, path: &Path) -> Result<(), OutputError> {
+    file.commit().map_err(|source| OutputError::File { path: path.into(), source })
 }

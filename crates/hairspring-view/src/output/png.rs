@@ -13,7 +13,7 @@ use std::{
 /// Returns an error if the folder is missing or not writable, or if the disk is full.
 pub fn write_png(path: &Path, image: &Image) -> Result<(), OutputError> {
     let mut file = beside(path)?;
-    let mut out = BufWriter::new(file.as_file_mut());
+    let mut out = BufWriter::new(&mut file);
     encode_png(&mut out, image)
         .and_then(|()| out.flush())
         .map_err(|source| OutputError::File { path: path.into(), source })?;

@@ -1,7 +1,7 @@
 //! The report: the table, the curves, each method with its equations, and the scene at the same moments side
 //! by side.
 
-use super::{HEADS, Setting, Trial, limits, methods, percent, row};
+use super::{HEADS, Setting, Trial, lessons, limits, percent, row};
 use crate::report::{
     chart::{Series, svg},
     document, escape, number,
@@ -42,10 +42,10 @@ pub fn page(setting: &Setting, trials: &[Trial]) -> String {
     body += &pictures(trials);
     body += &energy(setting, trials);
     body += &stretch(trials);
-    body += methods::SPRINGS;
-    body += methods::QUESTION;
+    body += lessons::SPRINGS;
+    body += lessons::QUESTION;
     trials.iter().for_each(|t| body += &section(t));
-    body += methods::CONTACT;
+    body += lessons::CONTACT;
     document("Time integrators for a strand of hair", &body)
 }
 
@@ -161,7 +161,7 @@ fn thinned(curve: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
 
 /// The section of a method: equations, explanation, and results.
 fn section(trial: &Trial) -> String {
-    let lesson = methods::lesson(trial.integrator);
+    let lesson = lessons::lesson(trial.integrator);
     let [name, stable, mean, worst, drift, ns, longest, _] = row(trial).map(|c| escape(&c));
     format!(
         "<section id=\"{name}\"><h3>{}</h3>\n<pre>{}</pre>\n<p>{}</p>\n\

@@ -4,7 +4,6 @@ use super::BOUND;
 use crate::{
     console::Progress,
     fault::Fault,
-    interrupt,
     picture::{Studio, View},
 };
 use hairspring_scene::stage::Stage;
@@ -80,9 +79,6 @@ pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) 
             let lost = if broken || most > BOUND { ", lost" } else { "" };
             format!("{name}, frame {frame}: {:.3} % the worst stretch{lost}", most * 1e2)
         });
-        if interrupt::asked() {
-            return Err(Fault::Interrupted("stopped: nothing was written".into()));
-        }
     }
     times.sort_by(f64::total_cmp);
     let work = stage.simulated_points().0 as f64 * f64::from(substeps);

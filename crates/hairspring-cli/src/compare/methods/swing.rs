@@ -1,7 +1,6 @@
 //! A free swing with one integrator: how its energy changes, and how long a step may be.
 
 use super::{BOUND, duration};
-use crate::{fault::Fault, interrupt};
 use hairspring::settings::Integrator;
 use hairspring_validate::swing::{Sample, Swing};
 
@@ -19,7 +18,7 @@ pub const STEPS: u64 = 200;
 /// Relative accuracy of the longest step [1].
 const EXACT: f64 = 0.05;
 
-/// Time between checks of the strands and of an interrupt [s]. Steps longer than this are checked one by one.
+/// Time between checks of the strands [s]. Steps longer than this are checked one by one.
 const LOOK: f64 = 2e-4;
 
 /// A free swing.
@@ -35,7 +34,7 @@ pub struct Swung {
 }
 
 /// Lets the sample swing for `seconds`, in steps of 1/60 s divided by `substeps`.
-pub fn swing(sample: &Sample, integrator: Integrator, substeps: u32, seconds: f64) -> Result<Swung, Fault> {
+pub fn swing(sample: &Sample, integrator: Integrator, substeps: u32, seconds: f64) -> Swung {
     let h = 1.0 / (60.0 * f64::from(substeps));
     let mut swing = Swing::new(sample, integrator, h);
     let (start, scale) = (swing.energy().total(), swing.energy_to_fall());
@@ -46,13 +45,12 @@ pub fn swing(sample: &Sample, integrator: Integrator, substeps: u32, seconds: f6
         let share = (swing.energy().total() - start) / scale;
         stretch_max = stretch_max.max(swing.measure().stretch_max);
         if report.reset_strands > 0 || !share.is_finite() || stretch_max > BOUND {
-            return Ok(Swung { energy, drift: None, stretch_max: None });
+            return Swung { energy, drift: None, stretch_max: None };
         }
         energy.push([step as f64 * h, 1.0 + share]);
-        may_go_on()?;
     }
     let drift = energy.last().map(|e| e[1] - 1.0);
-    Ok(Swung { energy, drift, stretch_max: Some(stretch_max) })
+    Swung { energy, drift, stretch_max: Some(stretch_max) }
 }
 
 /// The longest stable step.
@@ -87,48 +85,40 @@ impl LongestStep {
 }
 
 /// Finds the longest stable step by bisection of its logarithm.
-pub fn longest_step(sample: &Sample, integrator: Integrator) -> Result<LongestStep, Fault> {
-    if is_stable(sample, integrator, LONGEST)? {
-        return Ok(LongestStep::All);
+pub fn longest_step(sample: &Sample, integrator: Integrator) -> LongestStep {
+    if is_stable(sample, integrator, LONGEST) {
+        return LongestStep::All;
     }
-    if !is_stable(sample, integrator, SHORTEST)? {
-        return Ok(LongestStep::None);
+    if !is_stable(sample, integrator, SHORTEST) {
+        return LongestStep::None;
     }
     let (mut stable, mut unstable) = (SHORTEST, LONGEST);
     while unstable / stable > 1.0 + EXACT {
         let middle = (stable * unstable).sqrt();
-        if is_stable(sample, integrator, middle)? {
+        if is_stable(sample, integrator, middle) {
             stable = middle;
         } else {
             unstable = middle;
         }
     }
-    Ok(LongestStep::Found(stable))
+    LongestStep::Found(stable)
 }
 
 /// Whether steps of `h` [s] keep the strands together.
-fn is_stable(sample: &Sample, integrator: Integrator, h: f64) -> Result<bool, Fault> {
+fn is_stable(sample: &Sample, integrator: Integrator, h: f64) -> bool {
     let mut swing = Swing::new(sample, integrator, h);
     let steps = ((WATCHED / h).ceil() as u64).max(STEPS);
     let look = ((LOOK / h) as u64).max(1);
     for step in 1..=steps {
         if swing.step().reset_strands > 0 {
-            return Ok(false);
+            return false;
         }
         if step % look == 0 || step == steps {
             // A stretch that is NaN is not within the bound.
             if !swing.measure().stretch_max.le(&BOUND) {
-                return Ok(false);
+                return false;
             }
-            may_go_on()?;
         }
     }
-    Ok(true)
-}
-
-fn may_go_on() -> Result<(), Fault> {
-    match interrupt::asked() {
-        true => Err(Fault::Interrupted("stopped: nothing was written".into())),
-        false => Ok(()),
-    }
+    true
 }

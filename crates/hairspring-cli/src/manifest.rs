@@ -1,0 +1,319 @@
+//! The manifest of a sequence of files: what it was made from, and the checksum of each finished file.
+//!
+//! It is a JSON file beside the sequence. `--resume` compares it with the current run, and checks each
+//! finished file against it.
+
+use crate::{console::Console, fault::Fault, output};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest as _, Sha256};
+use std::{
+    cell::RefCell,
+    collections::{BTreeMap, BTreeSet},
+    fs::File,
+    io::{self, ErrorKind, Read},
+    path::{Path, PathBuf},
+    rc::Rc,
+    time::{Duration, Instant},
+};
+
+/// Shortest time between two writes of a manifest during a run. A file that was finished after the last write
+/// is made again by the next run.
+const EVERY: Duration = Duration::from_secs(1);
+
+/// A run spends at most this share of its time on writing its manifest [1].
+const SHARE: u32 = 20;
+
+/// Number of items that a message lists.
+const LISTED: usize = 3;
+
+/// Length and checksum of a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Checksum {
+    /// Length [bytes].
+    bytes: u64,
+    /// SHA-256 in hexadecimal, as `sha256sum` prints it.
+    sha256: String,
+}
+
+impl Checksum {
+    fn of_bytes(bytes: &[u8]) -> Self {
+        Self { bytes: bytes.len() as u64, sha256: hexadecimal(Sha256::digest(bytes).as_slice()) }
+    }
+
+    fn of_file(path: &Path) -> io::Result<Self> {
+        let mut file = File::open(path)?;
+        let (mut hash, mut bytes, mut part) = (Sha256::new(), 0, vec![0; 1 << 20]);
+        loop {
+            match file.read(&mut part)? {
+                0 => return Ok(Self { bytes, sha256: hexadecimal(hash.finalize().as_slice()) }),
+                n => {
+                    hash.update(&part[..n]);
+                    bytes += n as u64;
+                }
+            }
+        }
+    }
+}
+
+fn hexadecimal(hash: &[u8]) -> String {
+    hash.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Everything that the content of the files depends on.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Origin {
+    /// The command: `bake` or `render`.
+    command: String,
+    /// Version of the program.
+    version: String,
+    /// Instruction set of the simulation. Results of different ones differ in the last digits.
+    instruction_set: String,
+    /// Options of the command line that change the files, without those that have their default.
+    options: BTreeMap<String, String>,
+    /// The scene or groom, and all files that it names, by their paths from its folder.
+    inputs: BTreeMap<String, Checksum>,
+}
+
+impl Origin {
+    /// `options` lists all options; those without a value have their default.
+    pub fn new(command: &str, options: &[(&str, Option<String>)], inputs: Inputs) -> Self {
+        let instruction_set = hairspring::simulation::Simulation::instruction_sets().into_iter().next();
+        Self {
+            command: command.into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            instruction_set: instruction_set.unwrap_or_default(),
+            options: options
+                .iter()
+                .filter_map(|(name, value)| Some(((*name).into(), value.clone()?)))
+                .collect(),
+            inputs: inputs.0,
+        }
+    }
+
+    /// Describes what differs between `self`, the origin of an earlier run, and that of this run.
+    fn differences(&self, now: &Self) -> Vec<String> {
+        let mut found = Vec::new();
+        for (what, before, now) in [
+            ("hairspring", &self.version, &now.version),
+            ("the command", &self.command, &now.command),
+            ("the instruction set", &self.instruction_set, &now.instruction_set),
+        ] {
+            if before != now {
+                found.push(format!("{what} was {before} and is {now}"));
+            }
+        }
+        for name in self.options.keys().chain(now.options.keys().filter(|n| !self.options.contains_key(*n))) {
+            let [before, now] = [self, now].map(|o| o.options.get(name).map_or("the default", |v| v));
+            if before != now {
+                found.push(format!("--{name} was {before} and is {now}"));
+            }
+        }
+        for (name, before) in &self.inputs {
+            match now.inputs.get(name) {
+                Some(now) if now == before => {}
+                Some(_) => found.push(format!("{name} has changed")),
+                None => found.push(format!("{name} is no longer read")),
+            }
+        }
+        for name in now.inputs.keys().filter(|name| !self.inputs.contains_key(*name)) {
+            found.push(format!("{name} was not read before"));
+        }
+        found
+    }
+}
+
+/// The files that were read, and their checksums.
+#[derive(Clone, Debug, Default)]
+pub struct Inputs(BTreeMap<String, Checksum>);
+
+impl Inputs {
+    /// Names of files that both have read with different content.
+    pub fn changed(&self, other: &Self) -> Vec<String> {
+        let differs =
+            |(name, checksum): &(&String, &Checksum)| other.0.get(*name).is_some_and(|c| c != *checksum);
+        self.0.iter().filter(differs).map(|(name, _)| name.clone()).collect()
+    }
+
+    /// Calls `read`, which reads the scene or groom `main`, and records all files that it reads.
+    pub fn record<T>(main: &Path, read: impl FnOnce() -> T) -> (T, Self) {
+        let folder = main.parent().unwrap_or(Path::new("")).to_owned();
+        let inputs = Rc::new(RefCell::new(Self::default()));
+        let sink = inputs.clone();
+        let observe = move |path: &Path, content: &[u8]| {
+            let name = path.strip_prefix(&folder).unwrap_or(path).display().to_string();
+            sink.borrow_mut().0.entry(name).or_insert_with(|| Checksum::of_bytes(content));
+        };
+        let result = hairspring_io::observe_files(observe, read);
+        (result, inputs.take())
+    }
+}
+
+/// A manifest file.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Content {
+    origin: Origin,
+    /// The finished files by their names.
+    files: BTreeMap<String, Checksum>,
+}
+
+/// The manifest of a run.
+pub struct Manifest {
+    path: PathBuf,
+    content: Content,
+    /// Names of the files that this run replaces.
+    replaced: BTreeSet<String>,
+    /// When it was last written, and how long that took.
+    written: Option<(Instant, Duration)>,
+}
+
+impl Manifest {
+    /// Path of the manifest of the numbered files `pattern`: `hair.####.hair` → `hair.bake.hair.json`.
+    pub fn path(pattern: &Path, command: &str) -> PathBuf {
+        let name = pattern.file_name().unwrap_or_default().to_string_lossy();
+        let end = name.rfind('#').map_or(0, |at| at + 1);
+        let start = name[..end].trim_end_matches('#').len();
+        pattern.with_file_name(format!("{}{command}{}.json", &name[..start], &name[end..]))
+    }
+
+    /// Starts a run. Files of an earlier run with the same origin stay listed.
+    ///
+    /// # Errors
+    /// With `resume`, returns an error that says what differs if the origin of the earlier run differs, or
+    /// if its manifest cannot be read.
+    pub fn begin(pattern: &Path, origin: Origin, resume: bool, console: Console) -> Result<Self, Fault> {
+        let path = Self::path(pattern, &origin.command);
+        let mut content = Content { origin, files: BTreeMap::new() };
+        match read(&path) {
+            Ok(Some(before)) => {
+                let mut differences = before.origin.differences(&content.origin);
+                if differences.is_empty() {
+                    content.files = before.files;
+                } else {
+                    let more = differences.len().saturating_sub(LISTED);
+                    differences.truncate(LISTED);
+                    let more = if more > 0 { format!(", and {more} more") } else { String::new() };
+                    let (path, what) = (path.display(), differences.join(", "));
+                    if resume {
+                        return Err(Fault::Usage(format!(
+                            "--resume needs the inputs and options of {path}, but {what}{more}; run it without \
+                             --resume to start again"
+                        )));
+                    }
+                    console.note(format_args!("{path} is of another run and is replaced: {what}{more}"));
+                }
+            }
+            Ok(None) if resume => console
+                .note(format_args!("{} does not exist, so no frame counts as finished", path.display())),
+            Err(why) if resume => return Err(why),
+            // A new run replaces it.
+            Ok(None) | Err(_) => {}
+        }
+        Ok(Self { path, content, replaced: BTreeSet::new(), written: None })
+    }
+
+    /// Returns those of `frames` that are not finished, and prints which files are made again although they
+    /// exist.
+    pub fn unfinished(&self, frames: &[u32], pattern: &Path, console: Console) -> Vec<u32> {
+        let mut again = Vec::new();
+        let wanted = frames.iter().copied().filter(|&number| {
+            let path = output::frame_path(pattern, number);
+            let why = match (Checksum::of_file(&path), self.content.files.get(&name_of(&path))) {
+                (Ok(now), Some(before)) if now == *before => return false,
+                (Ok(now), Some(before)) if now.bytes != before.bytes => {
+                    format!("it has {} bytes instead of {}", now.bytes, before.bytes)
+                }
+                (Ok(_), Some(_)) => "its content has changed".into(),
+                (Ok(_), None) => "the manifest does not list it".into(),
+                (Err(why), _) if why.kind() == ErrorKind::NotFound => return true,
+                (Err(why), _) => format!("it could not be read: {why}"),
+            };
+            again.push(format!("{} is made again: {why}", path.display()));
+            true
+        });
+        let wanted = wanted.collect();
+        let more = again.len().saturating_sub(LISTED);
+        console.note_all(again.iter().take(LISTED));
+        if more > 0 {
+            console.note(format_args!("{more} more files are made again"));
+        }
+        wanted
+    }
+
+    /// Lists the file `path`, which is complete.
+    pub fn finished(&mut self, path: &Path) -> Result<(), Fault> {
+        let checksum = Checksum::of_file(path)
+            .map_err(|why| Fault::Unwritable(format!("{} could not be read back: {why}", path.display())))?;
+        self.content.files.insert(name_of(path), checksum);
+        let due = self.written.is_none_or(|(when, took)| when.elapsed() > EVERY.max(took * SHARE));
+        if due { self.write() } else { Ok(()) }
+    }
+
+    /// Removes the files of `frames` from the list, because they are about to be replaced. Takes effect when
+    /// the manifest is written, which must be before the first of them.
+    pub fn will_replace(&mut self, frames: &[u32], pattern: &Path) {
+        self.replaced = frames.iter().map(|n| name_of(&output::frame_path(pattern, *n))).collect();
+        self.content.files.retain(|name, _| !self.replaced.contains(name));
+    }
+
+    /// Writes the manifest. Files that another run of the same origin has finished meanwhile stay listed.
+    pub fn write(&mut self) -> Result<(), Fault> {
+        let began = Instant::now();
+        if let Ok(Some(there)) = read(&self.path)
+            && there.origin == self.content.origin
+        {
+            for (name, checksum) in there.files {
+                if !self.replaced.contains(&name) {
+                    self.content.files.insert(name, checksum);
+                }
+            }
+        }
+        let text = serde_json::to_string_pretty(&self.content)
+            .map_err(|why| Fault::Unwritable(format!("{}: {why}", self.path.display())))?;
+        output::write_whole(&self.path, (text + "\n").as_bytes())?;
+        self.written = Some((Instant::now(), began.elapsed()));
+        Ok(())
+    }
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Reads a manifest; `None` if there is none.
+fn read(path: &Path) -> Result<Option<Content>, Fault> {
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(why) if why.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(why) => return Err(Fault::Unreadable(format!("{} could not be read: {why}", path.display()))),
+    };
+    serde_json::from_str(&text).map(Some).map_err(|why| {
+        Fault::Content(format!(
+            "{} is not the manifest of an earlier run ({why}); run it without --resume to start again",
+            path.display()
+        ))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_manifest_is_named_after_its_files() {
+        let path = |p: &str| Manifest::path(Path::new(p), "bake").to_string_lossy().into_owned();
+        assert_eq!(path("out/hair.####.hair"), "out/hair.bake.hair.json");
+        assert_eq!(path("a##b#.tfx"), "a##bbake.tfx.json");
+    }
+
+    #[test]
+    fn checksums_are_those_of_sha256sum() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("abc");
+        std::fs::write(&path, "abc").unwrap();
+        let known = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
+        assert_eq!(Checksum::of_file(&path).unwrap(), Checksum { bytes: 3, sha256: known.into() });
+        assert_eq!(Checksum::of_bytes(b"abc").sha256, known);
+    }
+}
