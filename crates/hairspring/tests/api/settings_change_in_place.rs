@@ -20,7 +20,7 @@ fn ball() -> [MovingCollider; 1] {
 }
 
 fn base() -> Material {
-    Material { tether: 1.5, ..Material::default() }
+    Material { tether: 1.0, ..Material::default() }
 }
 
 /// A simulation that has run for 20 frames.
