@@ -216,7 +216,7 @@ fn a_scene_reports_stage_times_and_contacts() {
     assert!(number("ns_per_point_substep") > 0.0);
     let still = ["bench", "--scene", "head.toml", "--rest", "--frames", "5", "--json"];
     let still = json(&succeed(folder.path(), &still));
-    assert!(still["speed_max_m_s"].as_f64().unwrap() < number("speed_max_m_s"), "{still}");
+    assert!(still["speed_max_m_s"].as_f64().unwrap() < 1e-3, "hair at rest moves: {still}");
     let output = succeed(folder.path(), &arguments);
     assert!(stages.iter().all(|name| output.contains(name)) && output.contains("pushed out"), "{output}");
 }
