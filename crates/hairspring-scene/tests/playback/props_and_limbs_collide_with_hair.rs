@@ -15,7 +15,6 @@ use hairspring::{
     settings::Solver,
 };
 use hairspring_scene::{Guides, Scene, SceneGroom, SceneSheet, stage::Stage};
-use hairspring_test::line;
 
 const POINTS: usize = 16;
 const LENGTH: f32 = 0.16;
@@ -57,7 +56,9 @@ fn scene(parent: Option<u32>, stride: f32) -> Scene {
     let clip = Clip { name: "throw".into(), rate: 60.0, joint_count: 2, samples };
     let strand = |k: usize| {
         let root = Vec3::new(0.0, 0.0, 0.003 * k as f32 - 0.045);
-        line(root, root - Vec3::Y * LENGTH, POINTS)
+        (0..POINTS)
+            .map(move |i| root - Vec3::Y * (LENGTH * i as f32 / (POINTS - 1) as f32))
+            .collect::<Vec<_>>()
     };
     let mut groom = Groom::from_strands((0..31).map(strand), 35e-6);
     bind_roots(&mut groom, &body.mesh);

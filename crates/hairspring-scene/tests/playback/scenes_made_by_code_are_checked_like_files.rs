@@ -33,7 +33,7 @@ fn every_part_of_a_scene_is_checked() {
                 let shape = Shape::Sphere { center: Vec3::ZERO, radius: -1.0 };
                 s.colliders = vec![Collider { joint: None, shape }];
             },
-            "collider 0: `shape` must be finite, with a radius",
+            "collider 0: `shape.sphere.radius` must be above 0 [m]",
         ),
     ];
     let good = scene(&BuiltinOptions { strands: 50, ..Default::default() });
