@@ -35,8 +35,10 @@ pub fn listen(quiet: bool) {
         }
         hairspring_file::remove_pending_files();
         match *current {
-            Some(what) => console::complain(&format_args!("stopped without finishing {what}")),
-            None => console::complain(&"stopped: nothing was written"),
+            Some(what) => console::complain(&format_args!(
+                "interrupted before the end of {what}; no partial file is left"
+            )),
+            None => console::complain(&"interrupted; no partial file is left"),
         }
         std::process::exit(CODE.into());
     });

@@ -61,7 +61,6 @@ fn hexadecimal(hash: &[u8]) -> String {
 
 /// Everything that the content of the files depends on.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Origin {
     /// The command: `bake` or `render`.
     command: String,
@@ -151,7 +150,6 @@ impl Inputs {
 
 /// A manifest file.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 struct Content {
     origin: Origin,
     /// The finished files by their names.
@@ -219,15 +217,11 @@ impl Manifest {
         let mut again = Vec::new();
         let wanted = frames.iter().copied().filter(|&number| {
             let path = output::frame_path(pattern, number);
-            let why = match (Checksum::of_file(&path), self.content.files.get(&name_of(&path))) {
-                (Ok(now), Some(before)) if now == *before => return false,
-                (Ok(now), Some(before)) if now.bytes != before.bytes => {
-                    format!("it has {} bytes instead of {}", now.bytes, before.bytes)
-                }
-                (Ok(_), Some(_)) => "its content has changed".into(),
-                (Ok(_), None) => "the manifest does not list it".into(),
-                (Err(why), _) if why.kind() == ErrorKind::NotFound => return true,
-                (Err(why), _) => format!("it could not be read: {why}"),
+            let why = match self.why_unfinished(&path) {
+                Ok(None) => return false,
+                Ok(Some(why)) => why,
+                Err(why) if why.kind() == ErrorKind::NotFound => return true,
+                Err(why) => format!("it could not be read: {why}"),
             };
             again.push(format!("{} is made again: {why}", path.display()));
             true
@@ -239,6 +233,23 @@ impl Manifest {
             console.note(format_args!("{more} more files are made again"));
         }
         wanted
+    }
+
+    /// Says why the file `path` does not count as finished; `None` if it does.
+    fn why_unfinished(&self, path: &Path) -> io::Result<Option<String>> {
+        let there = std::fs::metadata(path)?;
+        // Reading a pipe or a device might never end.
+        if !there.is_file() {
+            return Ok(Some("it is not a regular file".into()));
+        }
+        let Some(before) = self.content.files.get(&name_of(path)) else {
+            return Ok(Some("the manifest does not list it".into()));
+        };
+        if there.len() != before.bytes {
+            return Ok(Some(format!("it has {} bytes instead of {}", there.len(), before.bytes)));
+        }
+        let same = Checksum::of_file(path)? == *before;
+        Ok((!same).then(|| "its content has changed".into()))
     }
 
     /// Lists the file `path`, which is complete.
@@ -283,6 +294,10 @@ fn name_of(path: &Path) -> String {
 
 /// Reads a manifest; `None` if there is none.
 fn read(path: &Path) -> Result<Option<Content>, Fault> {
+    // Reading a pipe or a device might never end.
+    if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+        return Err(Fault::Unreadable(format!("{} is not a regular file", path.display())));
+    }
     let text = match std::fs::read_to_string(path) {
         Ok(text) => text,
         Err(why) if why.kind() == ErrorKind::NotFound => return Ok(None),

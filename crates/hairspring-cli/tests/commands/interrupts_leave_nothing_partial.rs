@@ -83,7 +83,7 @@ fn while_reading_and_during_the_preroll() {
             std::thread::sleep(Duration::from_millis(delay));
             signal(&child, name);
             let stderr = ended(child);
-            assert!(stderr.contains("stopped: nothing was written"), "{arguments:?}: {stderr}");
+            assert!(stderr.contains("interrupted; no partial file is left"), "{arguments:?}: {stderr}");
             assert!(contents(f) == before, "{arguments:?} left something behind");
         }
     }
@@ -142,7 +142,7 @@ fn a_second_signal_ends_a_long_frame_at_once() {
     ended(child);
     let mut rest = String::new();
     stderr.read_to_string(&mut rest).unwrap();
-    assert!(rest.contains("stopped without finishing the current frame"), "{rest}");
+    assert!(rest.contains("interrupted before the end of the current frame"), "{rest}");
     no_temporary(f);
     assert!(!f.join("x.2.hair").exists());
     assert!(hairspring_io::read_groom(&f.join("x.1.hair"), &Default::default()).is_ok());

@@ -117,6 +117,22 @@ fn frames_without_a_manifest_are_made_again() {
     assert!(contents(f) == whole);
 }
 
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_the_place_of_a_frame_is_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_scene(f, 40);
+    bake(f, &["--frames", "1-2"]);
+    let whole = contents(f);
+    std::fs::remove_file(f.join("hair.02.hair")).unwrap();
+    let made = std::process::Command::new("mkfifo").arg(f.join("hair.02.hair")).status();
+    assert!(made.unwrap().success());
+    let stderr = resume(f, &[&BAKE[..], &["--frames", "1-2"]].concat());
+    assert!(stderr.contains("hair.02.hair is made again: it is not a regular file"), "{stderr}");
+    assert!(contents(f) == whole);
+}
+
 #[test]
 fn ranges_of_one_bake_share_a_manifest() {
     let folder = tempfile::tempdir().unwrap();
