@@ -10,6 +10,7 @@ mod bytes;
 mod error;
 mod load;
 mod motion;
+mod polygon;
 mod save;
 mod skin;
 mod strands;

@@ -70,7 +70,7 @@ pub enum Shape {
     },
     /// The convex hull of points: a shoulder, a stone, a brush.
     Hull {
-        /// Points of the hull [m], four or more. Default: the vertices of `file`.
+        /// Points of the hull [m], four to [`MAX_POINTS`](Shape::MAX_POINTS). Default: the vertices of `file`.
         #[serde(default)]
         points: Vec<Vec3>,
         /// A mesh file. The scene reader replaces `points` with its vertices; this crate does not open it.
@@ -83,6 +83,9 @@ pub enum Shape {
 }
 
 impl Shape {
+    /// Maximum number of points of a hull: the cost of making it grows with the square of their number.
+    pub const MAX_POINTS: usize = 2048;
+
     /// Returns the collider shape; `None` for a hull whose points span no volume.
     pub fn obstacle(&self) -> Option<ColliderShape> {
         Some(match *self {
@@ -102,14 +105,15 @@ impl Shape {
 }
 
 /// Describes a valid shape, for error messages.
-const SOUND: &str = "finite, with a radius or edges above 0 [m], a normal that is not 0, or `points` that span a volume or a `file` of them";
+const SOUND: &str = "finite, with a radius or edges above 0 [m], a normal that is not 0, or at most 2048 `points` that span a volume or a `file` of them";
 
 impl Validate for Shape {
     /// The shape is finite and has an inside. For a plane only its own extent counts, not its half-space.
     fn checks(&self) -> Vec<Check> {
         let sound = match *self {
             Shape::Hull { ref points, ref file, scale } => {
-                let given = if file.is_some() { points.is_empty() } else { self.obstacle().is_some() };
+                let few = points.len() <= Self::MAX_POINTS;
+                let given = if file.is_some() { points.is_empty() } else { few && self.obstacle().is_some() };
                 given && points.iter().all(|p| p.is_finite()) && above_0(scale)
             }
             Shape::Sphere { center, radius } => center.is_finite() && above_0(Some(radius)),
