@@ -169,15 +169,17 @@ fn a_hull_of_many_vertices_is_made_of_the_outermost() {
     let mut text: String = (0..count)
         .map(|i| {
             let z = 1.0 - (2 * i + 1) as f32 / count as f32;
-            let (sin, cos) = (i as f32 * 2.4).sin_cos();
+            let (sin, cos) = (i as f32 * 2.399_963).sin_cos();
             let r = (1.0 - z * z).sqrt();
             format!("v {} {} {z}\n", r * cos, r * sin)
         })
         .collect();
     text += "f 1 2 3\n";
     fs::write(folder.path().join("ball.obj"), text).unwrap();
+    fs::write(folder.path().join("hair.obj"), "v 0 1 0\nv 0 1.1 0\nv 0 1.2 0\nl 1 2 3\n").unwrap();
+    let groom = "[[groom]]\nfile = \"hair.obj\"\nscale = 1.0\n[[collider]]\n";
     let scene = folder.path().join("scene.toml");
-    fs::write(&scene, "[[collider]]\nshape.hull = { file = \"ball.obj\", scale = 1.0 }\n").unwrap();
+    fs::write(&scene, format!("{groom}shape.hull = {{ file = \"ball.obj\", scale = 1.0 }}\n")).unwrap();
     let start = Instant::now();
     let loaded = read_scene(&scene).unwrap();
     assert!(loaded.notes.iter().any(|n| n.contains("the hull of its 20000 vertices")), "{:?}", loaded.notes);
@@ -187,8 +189,7 @@ fn a_hull_of_many_vertices_is_made_of_the_outermost() {
     assert!(deepest > 0.995, "a face of the hull is {deepest} of the radius from the center");
     assert!(start.elapsed() < ENOUGH, "took {:?}", start.elapsed());
     let points: Vec<String> = (0..3_000).map(|i| format!("[{i}.0, {}.0, {}.0]", i * i % 97, i % 7)).collect();
-    fs::write(&scene, format!("[[collider]]\nshape.hull = {{ points = [{}] }}\n", points.join(", ")))
-        .unwrap();
+    fs::write(&scene, format!("{groom}shape.hull = {{ points = [{}] }}\n", points.join(", "))).unwrap();
     assert!(read_scene(&scene).unwrap_err().to_string().contains("at most 2048"));
 }
 
@@ -239,7 +240,8 @@ fn no_control_character_reaches_the_terminal() {
     let required = json!({"asset": {"version": "2.0"}, "extensionsRequired": [EVIL]});
     fs::write(path("d.gltf"), gltf(required)).unwrap();
     fs::write(path("e.toml"), "[[groom]]\nfile = \"\\u001b]0;owned\\u0007.hair\"\n").unwrap();
-    fs::write(path("f.toml"), "[body]\nfile = \"evil.glb\"\n[[collider]]\njoint = \"\\u001b]0;\"\nshape.sphere = {center = [0, 0, 0], radius = 1}\n").unwrap();
+    fs::write(path("f.toml"), "[[groom]]\nfile = \"hair.obj\"\n[body]\nfile = \"evil.glb\"\n[[collider]]\njoint = \"\\u001b]0;\"\nshape.sphere = {center = [0, 0, 0], radius = 1}\n").unwrap();
+    fs::write(path("hair.obj"), "v 0 1 0\nv 0 1.1 0\nv 0 1.2 0\nl 1 2 3\n").unwrap();
     fs::write(path("g.toml"), "\"\\u001b[31m\" = 1\n").unwrap();
     let errors = [
         read_body(&path("a.obj"), &options).unwrap_err(),

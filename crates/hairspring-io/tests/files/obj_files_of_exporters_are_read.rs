@@ -137,8 +137,9 @@ fn polylines_are_strands() {
         ["g hair\nl 1/1 2/1 3/1\nl 4 5\nl 1\n", "l 1/1 2\nl 2 3 # tip\nl 4 5\n", "l -5/1 \\\n-4 -3\rl 4 5"]
     {
         fs::write(&path, format!("{strands}{lines}")).unwrap();
-        let groom = read_groom(&path, &options).unwrap().value;
+        let groom = obj::parse_groom(&fs::read(&path).unwrap()).unwrap();
         assert_eq!(groom.offsets, [0, 3, 5], "{lines}");
+        assert_eq!(read_groom(&path, &options).unwrap().value.strand_count(), 2);
         assert_eq!(groom.points[..3], [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2]);
         assert_eq!(groom.root_uvs[0], glam::Vec2::new(0.5, 0.25));
         let error = read_body(&path, &options).unwrap_err().to_string();
