@@ -15,6 +15,7 @@ fn main() -> io::Result<()> {
     for (name, bytes, _) in samples::all() {
         let (target, bytes) = match name {
             "hair-even" => ("hair", bytes),
+            "obj-strands" => ("obj", bytes),
             "tfx-3" | "tfx-4" => ("tfx", bytes),
             "rig" | "weights" => ("rig", rig.clone()),
             "toml" => ("scene", scene.clone()),

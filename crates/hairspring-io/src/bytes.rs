@@ -2,6 +2,11 @@
 
 use crate::{Place, Problem};
 use bytemuck::Pod;
+use std::{
+    fs::{File, Metadata},
+    io::{self, Read},
+    path::Path,
+};
 
 #[cfg(target_endian = "big")]
 compile_error!(
@@ -63,7 +68,10 @@ impl<'a> Bytes<'a> {
     pub(crate) fn array<T: Pod>(&mut self, count: usize, what: &str) -> Result<Vec<T>, Problem> {
         let size = count.checked_mul(size_of::<T>()).ok_or_else(|| self.cut_short(count, what))?;
         let bytes = self.take(size, &format!("{what} ({count} values)"))?;
-        Ok(bytemuck::pod_collect_to_vec(bytes))
+        let mut values: Vec<T> = with_room(count)?;
+        values.resize(count, T::zeroed());
+        bytemuck::cast_slice_mut(&mut values).copy_from_slice(bytes);
+        Ok(values)
     }
 
     fn cut_short(&self, count: usize, what: &str) -> Problem {
@@ -72,4 +80,44 @@ impl<'a> Bytes<'a> {
             format!("{what} names {count} values, more than the file can hold"),
         )
     }
+}
+
+/// Returns an empty vector with room for `count` values, or a sentence if there is no memory for them.
+pub(crate) fn with_room<T>(count: usize) -> Result<Vec<T>, Problem> {
+    let mut values = Vec::new();
+    values.try_reserve_exact(count).map_err(|_| {
+        let size = count.saturating_mul(size_of::<T>());
+        Problem::limit(
+            Place::Whole,
+            format!("there is no memory for {size} bytes that the file needs; reduce it"),
+        )
+    })?;
+    Ok(values)
+}
+
+/// Reads a regular file of at most `limit` bytes; `None` if it is longer. The limit applies to the bytes that
+/// are read, because the size of some files (in `/proc`, or growing ones) is not in their metadata.
+///
+/// # Errors
+/// Returns an error if the file cannot be opened or read, or is no regular file: a pipe would wait for a
+/// writer, and a device has no end.
+pub(crate) fn read_regular(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
+    let regular = |found: Metadata| match (found.is_file(), found.is_dir()) {
+        (true, _) => Ok(found.len()),
+        (_, true) => Err(io::Error::other("it is a folder; name a file in it")),
+        _ => Err(io::Error::other("it is a pipe, a socket or a device; copy its content to a file")),
+    };
+    // Opening a pipe waits already, so the kind is checked before. It is checked again on the open file, which
+    // may be another one by then.
+    regular(std::fs::metadata(path)?)?;
+    let file = File::open(path)?;
+    let size = regular(file.metadata()?)?;
+    if size > limit {
+        return Ok(None);
+    }
+    let mut data = Vec::new();
+    let out_of_memory = |_| io::Error::other(format!("there is no memory for its {size} bytes"));
+    data.try_reserve_exact(usize::try_from(size).unwrap_or(usize::MAX)).map_err(out_of_memory)?;
+    file.take(limit.saturating_add(1)).read_to_end(&mut data)?;
+    Ok((data.len() as u64 <= limit).then_some(data))
 }

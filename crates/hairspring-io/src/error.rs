@@ -1,5 +1,6 @@
 //! Errors of reading and writing files, each described in one sentence.
 
+use crate::text::printable;
 use std::{
     fmt, io,
     path::{Path, PathBuf},
@@ -13,7 +14,7 @@ pub type Result<T> = std::result::Result<T, Error>;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The file does not exist.
-    #[error("{path} was not found{why}", path = path.display())]
+    #[error("{path} was not found{why}", path = shown(path), why = printable(why))]
     NotFound {
         /// The path that was looked for.
         path: PathBuf,
@@ -21,7 +22,7 @@ pub enum Error {
         why: String,
     },
     /// The file exists, but the system could not read it.
-    #[error("{path} could not be read: {source}", path = path.display())]
+    #[error("{path} could not be read: {source}", path = shown(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -29,7 +30,7 @@ pub enum Error {
         source: io::Error,
     },
     /// The content of the file violates its format.
-    #[error("{path}{between}{problem}", path = path.display(), between = problem.between())]
+    #[error("{path}{between}{problem}", path = shown(path), between = problem.between())]
     Malformed {
         /// The file.
         path: PathBuf,
@@ -37,7 +38,7 @@ pub enum Error {
         problem: Problem,
     },
     /// The file exceeds one of the reader's limits.
-    #[error("{path}{between}{problem}", path = path.display(), between = problem.between())]
+    #[error("{path}{between}{problem}", path = shown(path), between = problem.between())]
     Limit {
         /// The file.
         path: PathBuf,
@@ -45,7 +46,7 @@ pub enum Error {
         problem: Problem,
     },
     /// There is no reader or writer for this extension, or none for this purpose.
-    #[error("{path}: {reason}", path = path.display())]
+    #[error("{path}: {reason}", path = shown(path), reason = printable(reason))]
     Unsupported {
         /// The file.
         path: PathBuf,
@@ -53,7 +54,7 @@ pub enum Error {
         reason: String,
     },
     /// The format cannot hold the data that was to be written.
-    #[error("{path} cannot be written: {reason}", path = path.display())]
+    #[error("{path} cannot be written: {reason}", path = shown(path), reason = printable(reason))]
     Unwritable {
         /// The file.
         path: PathBuf,
@@ -61,13 +62,18 @@ pub enum Error {
         reason: String,
     },
     /// The system could not write the file. No partial file is left.
-    #[error("{path} could not be written: {source}", path = path.display())]
+    #[error("{path} could not be written: {source}", path = shown(path))]
     Write {
         /// The file.
         path: PathBuf,
         /// The system's reason.
         source: io::Error,
     },
+}
+
+/// Returns a path for a message, without characters that control a terminal.
+fn shown(path: &Path) -> String {
+    printable(&path.to_string_lossy()).into_owned()
 }
 
 /// The category of an [`Error`], for exit codes and retries.
@@ -175,10 +181,11 @@ impl Problem {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let text = printable(&self.text);
         match self.place {
-            Place::Byte(at) => write!(f, "byte {at}: {}", self.text),
-            Place::Line(line) => write!(f, "line {line}: {}", self.text),
-            Place::Whole => f.write_str(&self.text),
+            Place::Byte(at) => write!(f, "byte {at}: {text}"),
+            Place::Line(line) => write!(f, "line {line}: {text}"),
+            Place::Whole => f.write_str(&text),
         }
     }
 }

@@ -11,6 +11,7 @@ mod error;
 mod load;
 mod motion;
 mod observe;
+mod polygon;
 mod save;
 mod skin;
 mod strands;

@@ -1,9 +1,11 @@
 //! Opens a file; its extension selects the format.
 
 use crate::{
-    Character, Error, Motion, Problem, ReadOptions, Result, bvh, gltf, hair, obj,
+    Character, Error, Motion, Problem, ReadOptions, Result, bvh,
+    bytes::read_regular,
+    gltf, hair, obj,
     strands::Read,
-    tfx, tfxbone, tfxmesh,
+    text, tfx, tfxbone, tfxmesh,
     units::{FileUnits, Subject, apply_to_body, extent, settle},
     usc,
 };
@@ -26,9 +28,9 @@ pub enum Format {
     TfxBone,
     /// TressFX `.tfxmesh`: a skinned body.
     TfxMesh,
-    /// Wavefront `.obj`: a body.
+    /// Wavefront `.obj`: a body, or a groom of polylines.
     Obj,
-    /// `.gltf` or `.glb`: a body with motions.
+    /// `.gltf`, `.glb` or `.vrm`: a body with motions.
     Gltf,
     /// Biovision `.bvh`: a motion.
     Bvh,
@@ -50,7 +52,7 @@ impl Format {
             "tfxbone" => Self::TfxBone,
             "tfxmesh" => Self::TfxMesh,
             "obj" => Self::Obj,
-            "gltf" | "glb" => Self::Gltf,
+            "gltf" | "glb" | "vrm" => Self::Gltf,
             "bvh" => Self::Bvh,
             "toml" => Self::Scene,
             _ => return None,
@@ -91,17 +93,20 @@ pub struct Loaded<T> {
 /// Largest file that is read [bytes]: 4 GiB, about 300 million points.
 const MAX_FILE: u64 = 4 << 30;
 
-/// Reads a hairstyle from a `.hair`, `.tfx` or `.data` file and repairs it (`groom::sanitize`).
+/// Reads a hairstyle from a `.hair`, `.tfx` or `.data` file, or from the polylines of an `.obj` file, and repairs it
+/// (`groom::sanitize`).
 ///
 /// # Errors
 /// Returns an error if the file is missing, unreadable, of another kind, malformed or without strands.
 pub fn read_groom(path: &Path, options: &ReadOptions) -> Result<Loaded<Groom>> {
-    let format = format_of(path, &Format::GROOMS, "a hairstyle")?;
+    let known = [&Format::GROOMS[..], &[Format::Obj]].concat();
+    let format = format_of(path, &known, "a hairstyle")?;
     check_scale(path, options)?;
     let data = bytes_of(path)?;
     let read: std::result::Result<Read, Problem> = match format {
         Format::Hair => hair::read(&data),
         Format::Tfx => tfx::read(&data),
+        Format::Obj => obj::read_groom(&data),
         _ => usc::read(&data),
     };
     let read = read.map_err(|p| p.in_file(path))?;
@@ -113,14 +118,25 @@ pub fn read_groom(path: &Path, options: &ReadOptions) -> Result<Loaded<Groom>> {
         return Err(Problem::whole(far.to_string()).in_file(path));
     }
     let repairs = sanitize(&mut groom);
-    Ok(Loaded { value: groom, format, scale, repairs, notes })
+    Ok(Loaded { value: groom, format, scale, repairs, notes: plain(notes) })
 }
 
-/// Reads a body from a `.gltf`, `.glb`, `.obj` or `.tfxmesh` file, with the motions that it holds.
+/// Reads a body from a `.gltf`, `.glb`, `.vrm`, `.obj` or `.tfxmesh` file, with the motions that it holds.
 ///
 /// # Errors
-/// Returns an error if the file is missing, unreadable, of another kind or malformed.
+/// Returns an error if the file is missing, unreadable, of another kind or malformed, or if its mesh has no
+/// triangles.
 pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
+    let loaded = read_character(path, options)?;
+    if loaded.value.body.mesh.triangles.is_empty() {
+        let text = "the file has no triangles, so it is no body; export a mesh with faces";
+        return Err(Problem::whole(text).in_file(path));
+    }
+    Ok(loaded)
+}
+
+/// Reads a body, which may have joints and motions but no mesh.
+fn read_character(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
     let format = format_of(path, &[Format::Gltf, Format::Obj, Format::TfxMesh], "a body")?;
     check_scale(path, options)?;
     let data = bytes_of(path)?;
@@ -131,14 +147,17 @@ pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>
             units.scale = Some(1.0);
             gltf::parse(&data, &|name| sibling(path, name))
         }
-        Format::Obj => obj::parse(&data).map(|mesh| (still(Body::rigid(mesh)), Vec::new())),
+        Format::Obj => obj::parse_with_notes(&data).map(|(mesh, notes)| (still(Body::rigid(mesh)), notes)),
         _ => tfxmesh::parse(&data).map(|body| (still(body), Vec::new())),
     }
     .map_err(|p| p.in_file(path))?;
     let extent = extent(character.body.mesh.positions.iter().copied());
     let (scale, turn) = settle(options, units, Subject::Body, extent, &mut notes);
     apply_to_body(&mut character.body, &mut character.clips, scale, turn);
-    Ok(Loaded { value: character, format, scale, repairs: Repairs::default(), notes })
+    let parts = character.body.mesh.parts.iter_mut().map(|part| &mut part.name);
+    let joints = character.body.joints.iter_mut().map(|joint| &mut joint.name);
+    make_printable(parts.chain(joints));
+    Ok(Loaded { value: character, format, scale, repairs: Repairs::default(), notes: plain(notes) })
 }
 
 /// Reads a motion from a `.bvh` file, or the animation called `name` from a `.gltf` or `.glb` file. If `name`
@@ -154,9 +173,10 @@ pub fn read_motion(path: &Path, name: Option<&str>, options: &ReadOptions) -> Re
         let data = bytes_of(path)?;
         let (mut motion, scale, notes) = bvh::read_in_meters(&data, options).map_err(|p| p.in_file(path))?;
         motion.clip.name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-        return Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes });
+        make_printable(motion.joints.iter_mut().map(|joint| &mut joint.name).chain([&mut motion.clip.name]));
+        return Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes: plain(notes) });
     }
-    let Loaded { value: character, scale, notes, .. } = read_body(path, options)?;
+    let Loaded { value: character, scale, notes, .. } = read_character(path, options)?;
     let clip = pick_clip(&character.clips, name).map_err(|text| Problem::whole(text).in_file(path))?.clone();
     let motion = Motion { joints: character.body.joints, clip };
     Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes })
@@ -168,7 +188,9 @@ pub fn read_motion(path: &Path, name: Option<&str>, options: &ReadOptions) -> Re
 /// Returns an error if the file is missing, unreadable, of another kind or malformed.
 pub fn read_bones(path: &Path) -> Result<tfxbone::RootBones> {
     format_of(path, &[Format::TfxBone], "root bones")?;
-    tfxbone::parse(&bytes_of(path)?).map_err(|p| p.in_file(path))
+    let mut bones = tfxbone::parse(&bytes_of(path)?).map_err(|p| p.in_file(path))?;
+    make_printable(bones.names.iter_mut());
+    Ok(bones)
 }
 
 /// Returns the clip called `name`, ignoring case, or the first if `name` is `None`. The error lists the
@@ -218,20 +240,22 @@ fn check_scale(path: &Path, options: &ReadOptions) -> Result<()> {
     }
 }
 
-/// Reads all bytes of a file.
+/// Reads all bytes of a regular file.
 pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
-    let unreadable = |source: io::Error| match source.kind() {
-        io::ErrorKind::NotFound => Error::NotFound { path: path.to_owned(), why: String::new() },
-        _ => Error::Unreadable { path: path.to_owned(), source },
-    };
-    let size = std::fs::metadata(path).map_err(unreadable)?.len();
-    if size > MAX_FILE {
-        let text = format!("the file has {size} bytes, more than the limit of {MAX_FILE}");
-        return Err(Problem::limit(crate::Place::Whole, text).in_file(path));
+    match read_regular(path, MAX_FILE) {
+        Ok(Some(data)) => {
+            crate::observe::report(path, &data);
+            Ok(data)
+        }
+        Ok(None) => {
+            let text = format!("the file is larger than the limit of {MAX_FILE} bytes; split it");
+            Err(Problem::limit(crate::Place::Whole, text).in_file(path))
+        }
+        Err(source) if source.kind() == io::ErrorKind::NotFound => {
+            Err(Error::NotFound { path: path.to_owned(), why: String::new() })
+        }
+        Err(source) => Err(Error::Unreadable { path: path.to_owned(), source }),
     }
-    let data = std::fs::read(path).map_err(unreadable)?;
-    crate::observe::report(path, &data);
-    Ok(data)
 }
 
 /// Reads a file next to `path`: in its folder or below, never above.
@@ -239,4 +263,18 @@ fn sibling(path: &Path, name: &str) -> Option<Vec<u8>> {
     let inside = Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
     let beside = path.parent().unwrap_or(Path::new("")).join(name);
     inside.then(|| bytes_of(&beside).ok()).flatten()
+}
+
+/// Escapes the characters of names that control a terminal.
+pub(crate) fn make_printable<'a>(names: impl IntoIterator<Item = &'a mut String>) {
+    for name in names {
+        if let std::borrow::Cow::Owned(shown) = text::printable(name) {
+            *name = shown;
+        }
+    }
+}
+
+/// Returns notes without the characters of a file that control a terminal.
+pub(crate) fn plain(notes: Vec<String>) -> Vec<String> {
+    notes.into_iter().map(|note| text::name(&note)).collect()
 }

@@ -1,4 +1,5 @@
-//! Reader for Wavefront `.obj` meshes (Alias|Wavefront, "Object Files", 1995): vertices, polygons, groups.
+//! Reader for Wavefront `.obj` files (Alias|Wavefront, "Object Files", 1995): vertices, polygons, groups. Polylines
+//! are the strands of a groom.
 //!
 //! Vertices keep the file's order and are not split at texture seams, so that a closed mesh stays closed and
 //! per-vertex weights fit. Each vertex takes the first texture coordinate that a face gives it. Normals are
@@ -6,54 +7,66 @@
 
 use crate::{
     Place, Problem,
-    text::{as_text, finite, shortened},
+    polygon::triangulate,
+    strands::Read,
+    text::{self, Lines, as_text, finite, shortened},
+    units::FileUnits,
 };
 use glam::{Vec2, Vec3};
-use hairspring::body::{Mesh, Part};
+use hairspring::{
+    body::{Mesh, Part},
+    groom::Groom,
+};
+use std::{borrow::Cow, iter::Enumerate};
 
 /// Color of a surface whose file does not specify one: a neutral light gray, linear RGB.
 pub(crate) const DEFAULT_COLOR: Vec3 = Vec3::splat(0.5);
 /// Roughness of a surface whose file does not specify one: skin and cloth are rather matte.
 pub(crate) const DEFAULT_ROUGHNESS: f32 = 0.6;
 
-/// Reads an `.obj` file, in its own units.
+/// Reads the mesh of an `.obj` file, in its own units.
 ///
 /// # Errors
-/// Returns an error for an invalid number, or for a face that refers to a missing vertex.
+/// Returns an error for an invalid number, for a face that refers to a missing vertex, or for a file without faces.
 pub fn parse(data: &[u8]) -> Result<Mesh, Problem> {
+    parse_with_notes(data).map(|(mesh, _)| mesh)
+}
+
+/// Reads the mesh of an `.obj` file, in its own units, and notes about what was left out.
+pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Problem> {
     let text = as_text(data);
     let mut mesh = Mesh::default();
     let mut uvs: Vec<Vec2> = Vec::new();
     let mut vertex_uv: Vec<u32> = Vec::new();
     let mut parts = Parts::default();
     let mut face: Vec<u32> = Vec::new();
-    for (i, line) in text.lines().enumerate() {
-        let line_number = i + 1;
+    let mut left_out = LeftOut::default();
+    for (line_number, line) in statements(&text) {
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => mesh.positions.push(Vec3::from(numbers(&mut words, line_number, "a vertex")?)),
-            Some("vt") => uvs.push(Vec2::from(numbers(&mut words, line_number, "a texture coordinate")?)),
-            Some("f") => {
+            Some("v") => mesh.positions.push(vertex(&mut words, line_number)?),
+            Some("vt") => uvs.push(texture_coordinate(&mut words, line_number)?),
+            Some("f" | "fo") => {
                 face.clear();
                 vertex_uv.resize(mesh.positions.len(), u32::MAX);
                 for corner in words {
-                    let mut fields = corner.split('/');
-                    let v = index(fields.next().unwrap_or(""), mesh.positions.len(), line_number, "vertex")?;
-                    if let Some(uv) = fields.next().filter(|f| !f.is_empty()) {
-                        let uv = index(uv, uvs.len(), line_number, "texture coordinate")?;
+                    let (v, uv) = corner_of(corner, mesh.positions.len(), uvs.len(), line_number)?;
+                    if let Some(uv) = uv {
                         let slot = &mut vertex_uv[v as usize];
                         *slot = if *slot == u32::MAX { uv } else { *slot };
                     }
                     face.push(v);
                 }
-                // A polygon becomes a fan of triangles around its first corner.
-                for w in face.get(1..).unwrap_or_default().windows(2) {
-                    mesh.triangles.push([face[0], w[0], w[1]]);
+                left_out.faces += usize::from(face.len() < 3);
+                if !triangulate(&mesh.positions, &face, &mut mesh.triangles) {
+                    left_out.concave += 1;
                 }
             }
+            Some("l") => left_out.lines += 1,
+            Some("curv" | "curv2" | "surf") => left_out.surfaces += 1,
             Some("g" | "o") => {
                 let name = words.collect::<Vec<_>>().join(" ");
-                parts.begin(name, mesh.triangles.len());
+                parts.begin(text::name(&name), mesh.triangles.len());
             }
             _ => {}
         }
@@ -61,13 +74,186 @@ pub fn parse(data: &[u8]) -> Result<Mesh, Problem> {
     if u32::try_from(mesh.positions.len()).is_err() || u32::try_from(mesh.triangles.len()).is_err() {
         return Err(Problem::limit(Place::Whole, "more than 4 billion vertices or triangles"));
     }
+    if mesh.triangles.is_empty() {
+        return Err(Problem::whole(left_out.instead_of_faces()));
+    }
     if vertex_uv.iter().any(|uv| *uv != u32::MAX) {
         vertex_uv.resize(mesh.positions.len(), u32::MAX);
         mesh.uvs = vertex_uv.iter().map(|uv| uvs.get(*uv as usize).copied().unwrap_or_default()).collect();
     }
     mesh.parts = parts.finish(mesh.triangles.len());
     mesh.compute_normals();
-    Ok(mesh)
+    Ok((mesh, left_out.notes()))
+}
+
+/// Reads the polylines of an `.obj` file as the strands of a groom, in its own units.
+///
+/// # Errors
+/// Returns an error for an invalid number, or for a line that refers to a missing vertex.
+pub fn parse_groom(data: &[u8]) -> Result<Groom, Problem> {
+    read_groom(data).map(Read::in_file_units)
+}
+
+/// Reads the polylines of an `.obj` file. The first point of each is its root.
+pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
+    let text = as_text(data);
+    let (mut vertices, mut uvs): (Vec<Vec3>, Vec<Vec2>) = (Vec::new(), Vec::new());
+    let mut groom = Groom { offsets: vec![0], ..Groom::default() };
+    let (mut last, mut faces, mut has_uvs) = (None, 0usize, false);
+    for (line_number, line) in statements(&text) {
+        let mut words = line.split_whitespace();
+        match words.next() {
+            Some("v") => vertices.push(vertex(&mut words, line_number)?),
+            Some("vt") => uvs.push(texture_coordinate(&mut words, line_number)?),
+            Some("f") => faces += 1,
+            Some("l") => {
+                let mut corners = words.map(|word| corner_of(word, vertices.len(), uvs.len(), line_number));
+                let Some(root) = corners.next().transpose()? else { continue };
+                let mut rest = corners.peekable();
+                if rest.peek().is_none() {
+                    continue;
+                }
+                // Some programs write each segment as a line of its own: one that begins where the line before it
+                // ends goes on with the strand.
+                if last == Some(root.0) {
+                    groom.offsets.pop();
+                } else {
+                    groom.points.push(vertices[root.0 as usize]);
+                    let uv = root.1.and_then(|uv| uvs.get(uv as usize));
+                    has_uvs |= uv.is_some();
+                    groom.root_uvs.push(uv.copied().unwrap_or_default());
+                }
+                for corner in rest {
+                    let (v, _) = corner?;
+                    groom.points.push(vertices[v as usize]);
+                    last = Some(v);
+                }
+                let end = u32::try_from(groom.points.len())
+                    .map_err(|_| Problem::limit(Place::Line(line_number), "more than 4 billion points"))?;
+                groom.offsets.push(end);
+            }
+            _ => {}
+        }
+    }
+    if groom.points.is_empty() {
+        return Err(Problem::whole(
+            "the file has no polylines (`l`), which are the strands of a hairstyle; export the curves, not a mesh",
+        ));
+    }
+    if !has_uvs {
+        groom.root_uvs.clear();
+    }
+    let mut notes = Vec::new();
+    if faces > 0 {
+        notes.push(format!("{faces} faces are left out, because a hairstyle is read from polylines"));
+    }
+    Ok(Read { groom, radii: None, true_radii: false, units: FileUnits::default(), notes })
+}
+
+/// What a mesh of the file lacks.
+#[derive(Default)]
+struct LeftOut {
+    /// Faces of fewer than three corners.
+    faces: usize,
+    /// Large polygons that are not convex.
+    concave: usize,
+    lines: usize,
+    /// Free-form curves and surfaces.
+    surfaces: usize,
+}
+
+impl LeftOut {
+    /// The sentence for a file without triangles.
+    fn instead_of_faces(&self) -> &'static str {
+        if self.surfaces > 0 {
+            "the file has free-form surfaces but no faces, so it is no mesh; export it as polygons"
+        } else if self.lines > 0 {
+            "the file has polylines but no faces, so it is no mesh; name it as a hairstyle, or export faces"
+        } else {
+            "the file has no faces, so it is no mesh; export it as .obj with faces"
+        }
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let counts = [
+            (self.faces, "faces have fewer than three corners and are left out; clean up the mesh"),
+            (
+                self.concave,
+                "polygons of many corners are not convex, and may overlap; triangulate them before the export",
+            ),
+            (
+                self.lines,
+                "polylines are no surface and are left out; name the file as a hairstyle to read them",
+            ),
+            (self.surfaces, "free-form curves and surfaces are left out; export them as polygons"),
+        ];
+        let some = counts.into_iter().filter(|(count, _)| *count > 0);
+        some.map(|(count, text)| format!("{count} {text}")).collect()
+    }
+}
+
+/// The statements of a file, with the number of their first line, counted from 1. A line that ends in a backslash
+/// goes on in the next one. A comment ends a statement of numbers.
+fn statements(text: &str) -> Statements<'_> {
+    Statements { lines: text::lines(text).enumerate() }
+}
+
+struct Statements<'a> {
+    lines: Enumerate<Lines<'a>>,
+}
+
+impl<'a> Iterator for Statements<'a> {
+    type Item = (usize, Cow<'a, str>);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let (i, first) = self.lines.next()?;
+        // The text of comments, names and paths may end in a backslash, or contain a number sign.
+        let keyword = first.split_whitespace().next().unwrap_or("");
+        if keyword.starts_with('#') || matches!(keyword, "o" | "g" | "usemtl" | "mtllib") {
+            return Some((i + 1, Cow::Borrowed(first)));
+        }
+        let numbers = |line: &'a str| line.split('#').next().unwrap_or("").trim_end();
+        let Some(start) = numbers(first).strip_suffix('\\') else {
+            return Some((i + 1, Cow::Borrowed(numbers(first))));
+        };
+        let mut statement = start.to_owned();
+        for (_, line) in self.lines.by_ref() {
+            statement.push(' ');
+            match numbers(line).strip_suffix('\\') {
+                Some(line) => statement.push_str(line),
+                None => {
+                    statement.push_str(numbers(line));
+                    break;
+                }
+            }
+        }
+        Some((i + 1, Cow::Owned(statement)))
+    }
+}
+
+/// Reads the position of a vertex.
+fn vertex<'a>(words: &mut impl Iterator<Item = &'a str>, line: usize) -> Result<Vec3, Problem> {
+    Ok(Vec3::from(numbers(words, line, "a vertex")?))
+}
+
+/// Reads a texture coordinate of one number or more.
+fn texture_coordinate<'a>(words: &mut impl Iterator<Item = &'a str>, line: usize) -> Result<Vec2, Problem> {
+    let [u] = numbers(words, line, "a texture coordinate")?;
+    let mut words = words.peekable();
+    let [v] = match words.peek() {
+        Some(_) => numbers(&mut words, line, "a texture coordinate")?,
+        None => [0.0],
+    };
+    Ok(Vec2::new(u, v))
+}
+
+/// Reads a corner of a face or a point of a line: the vertex and, if it has one, the texture coordinate.
+fn corner_of(word: &str, vertices: usize, uvs: usize, line: usize) -> Result<(u32, Option<u32>), Problem> {
+    let mut fields = word.split('/');
+    let v = index(fields.next().unwrap_or(""), vertices, line, "vertex")?;
+    let uv = fields.next().filter(|f| !f.is_empty());
+    let uv = uv.map(|uv| index(uv, uvs, line, "texture coordinate")).transpose()?;
+    Ok((v, uv))
 }
 
 /// Reads the next `N` words as numbers.
@@ -80,10 +266,15 @@ fn numbers<'a, const N: usize>(
     for x in &mut out {
         let word = words.next().unwrap_or("");
         *x = finite(word).ok_or_else(|| {
-            Problem::line(line, format!("expected {what} of {N} numbers, found `{}`", shortened(word)))
+            Problem::line(line, format!("expected {what} of {}, found `{}`", plural(N), shortened(word)))
         })?;
     }
     Ok(out)
+}
+
+/// `1 number`, `3 numbers`.
+fn plural(count: usize) -> String {
+    format!("{count} number{}", if count == 1 { "" } else { "s" })
 }
 
 /// Converts an `.obj` reference to an index from 0. A reference counts from 1, or from the end if it is
@@ -96,7 +287,10 @@ fn index(word: &str, count: usize, line: usize, what: &str) -> Result<u32, Probl
     if (0..count as i64).contains(&i) {
         Ok(i as u32)
     } else {
-        Err(Problem::line(line, format!("the face names {what} {n}, but only {count} are defined so far")))
+        Err(Problem::line(
+            line,
+            format!("the face or line names {what} {n}, but only {count} are defined so far"),
+        ))
     }
 }
 

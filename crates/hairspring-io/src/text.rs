@@ -2,18 +2,43 @@
 
 use crate::Problem;
 use glam::Vec3;
-use std::str::FromStr;
+use std::{borrow::Cow, str::FromStr};
+
+/// The lines of a text. A line ends in LF, in CR LF, or in CR (the classic Mac OS).
+#[derive(Clone)]
+pub(crate) struct Lines<'a> {
+    rest: &'a str,
+}
+
+/// Returns the lines of `text`.
+pub(crate) fn lines(text: &str) -> Lines<'_> {
+    Lines { rest: text }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = &'a str;
+
+    fn next(&mut self) -> Option<&'a str> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        let end = self.rest.find(['\n', '\r']).unwrap_or(self.rest.len());
+        let (line, rest) = self.rest.split_at(end);
+        self.rest = rest.strip_prefix("\r\n").or_else(|| rest.get(1..)).unwrap_or("");
+        Some(line)
+    }
+}
 
 /// The words of a text, with their lines.
 pub(crate) struct Words<'a> {
-    lines: std::iter::Enumerate<std::str::Lines<'a>>,
+    lines: std::iter::Enumerate<Lines<'a>>,
     words: std::str::SplitWhitespace<'a>,
     line: usize,
 }
 
 impl<'a> Words<'a> {
     pub(crate) fn new(text: &'a str) -> Self {
-        Self { lines: text.lines().enumerate(), words: "".split_whitespace(), line: 1 }
+        Self { lines: lines(text).enumerate(), words: "".split_whitespace(), line: 1 }
     }
 
     /// Line of the last word, counted from 1.
@@ -85,7 +110,40 @@ pub(crate) fn shortened(word: &str) -> String {
     if word.chars().count() <= 40 { word.into() } else { word.chars().take(40).chain(['…']).collect() }
 }
 
-/// A file's bytes as text. Bytes that are not UTF-8 (names in old encodings) become replacement characters.
-pub(crate) fn as_text(data: &[u8]) -> std::borrow::Cow<'_, str> {
-    String::from_utf8_lossy(data.strip_prefix(b"\xef\xbb\xbf").unwrap_or(data))
+/// A file's bytes as text: UTF-16 if the file begins with its byte order mark, otherwise UTF-8. Anything else
+/// (names in old encodings) becomes replacement characters.
+pub(crate) fn as_text(data: &[u8]) -> Cow<'_, str> {
+    match data {
+        [0xff, 0xfe, rest @ ..] => Cow::Owned(utf16(rest, u16::from_le_bytes)),
+        [0xfe, 0xff, rest @ ..] => Cow::Owned(utf16(rest, u16::from_be_bytes)),
+        _ => String::from_utf8_lossy(data.strip_prefix(b"\xef\xbb\xbf").unwrap_or(data)),
+    }
+}
+
+/// Decodes UTF-16. `unit` puts the two bytes of a code unit in order.
+fn utf16(data: &[u8], unit: fn([u8; 2]) -> u16) -> String {
+    let units = data.chunks_exact(2).map(|pair| unit([pair[0], pair[1]]));
+    char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
+}
+
+/// Returns `text` with the characters escaped that control a terminal or reorder what it shows. Names and paths
+/// that a file holds go through here before anything shows them.
+pub(crate) fn printable(text: &str) -> Cow<'_, str> {
+    let hidden = |c: char| {
+        c.is_control()
+            || matches!(c, '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
+    if !text.contains(hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        if hidden(c) { shown.extend(c.escape_default()) } else { shown.push(c) }
+    }
+    Cow::Owned(shown)
+}
+
+/// Returns a name of a file's object as the program keeps and shows it.
+pub(crate) fn name(text: &str) -> String {
+    printable(text).into_owned()
 }

@@ -72,7 +72,7 @@ define_settings! {
         Hull = "hull" {
             /// Points of the hull.
             #[serde(default)]
-            points: Vec<Vec3>, ["m"], {text "four or more that span a volume"}, default "the vertices of `file`";
+            points: Vec<Vec3>, ["m"], {text "4 to 2048 that span a volume"}, default "the vertices of `file`";
             /// A mesh file. The scene reader replaces `points` with its vertices; this crate does not open it.
             #[serde(default)]
             file: Option<PathBuf>, "none", {text "a mesh: `.glb`, `.gltf`, `.obj` or `.tfxmesh`"}, default "the `points`";
@@ -84,6 +84,9 @@ define_settings! {
 }
 
 impl Shape {
+    /// Maximum number of points of a hull: the cost of making it grows with the square of their number.
+    pub const MAX_POINTS: usize = 2048;
+
     /// Returns the collider shape; `None` for a hull whose points span no volume.
     pub fn obstacle(&self) -> Option<ColliderShape> {
         Some(match *self {
@@ -108,9 +111,14 @@ impl Validate for Shape {
     fn checks(&self) -> Vec<Check> {
         let mut checks = self.range_checks();
         if let Self::Hull { points, file, .. } = self {
-            let finite = points.iter().all(|p| p.is_finite());
+            let few = points.len() <= Self::MAX_POINTS;
+            let finite = few && points.iter().all(|p| p.is_finite());
             let spans = if file.is_some() { points.is_empty() } else { finite && self.obstacle().is_some() };
-            checks.push(check(spans, "hull", "given `points` that span a volume, or a `file` of them"));
+            checks.push(check(
+                spans,
+                "hull",
+                "given at most 2048 `points` that span a volume, or a `file` of them",
+            ));
         }
         checks
     }

@@ -2,21 +2,29 @@
 
 use super::{
     accessor::{Buffers, components},
+    json::{Animation, Document, Interpolation, Path},
     skeleton::Skeleton,
 };
-use crate::{Place, Problem, motion::check_samples};
+use crate::{Place, Problem, bytes::with_room, motion::MAX_SAMPLES, text};
 use glam::{Quat, Vec3, Vec4};
-use gltf::animation::{Interpolation, Property};
 use hairspring::body::{Clip, Trs};
+use std::{
+    collections::{HashMap, HashSet},
+    rc::Rc,
+};
 
 /// Rate at which animations are resampled [Hz]: that of a display, and higher than hand-made or captured
 /// motion needs.
 const RATE: f32 = 60.0;
 
-/// Keys of one property of one joint.
-struct Track {
-    joint: usize,
-    property: Property,
+/// Joint samples that a file of any size may make: three minutes of a hundred joints.
+const SAMPLES: usize = 1_200_000;
+
+/// Joint samples for each byte of a file, in addition. Two keys may be far apart in time.
+const SAMPLES_PER_BYTE: usize = 4;
+
+/// Keys of one property.
+struct Keys {
     interpolation: Interpolation,
     times: Vec<f32>,
     /// Vectors of three or four components. For cubic splines there are three per key: in-tangent, value,
@@ -24,32 +32,48 @@ struct Track {
     values: Vec<Vec4>,
 }
 
+/// The keys of one property of one joint. Joints may share them.
+struct Track {
+    joint: usize,
+    property: Path,
+    keys: Rc<Keys>,
+}
+
+/// Reads keys. Each pair of accessors is read once.
+struct Reader<'a> {
+    document: &'a Document,
+    buffers: &'a Buffers<'a>,
+    read: HashMap<(usize, usize, Interpolation, bool), Rc<Keys>>,
+}
+
+/// Channels that are not read.
+#[derive(Default)]
+struct LeftOut {
+    morphs: usize,
+    /// Without a joint, or of a property that an extension defines.
+    others: usize,
+    /// Of a property that a later channel of the same animation moves, too.
+    repeated: usize,
+}
+
 /// Converts every animation to a clip of the skeleton's joints.
 pub(super) fn clips(
-    document: &gltf::Document,
-    buffers: &Buffers,
+    document: &Document,
+    buffers: &Buffers<'_>,
     skeleton: &Skeleton,
     notes: &mut Vec<String>,
 ) -> Result<Vec<Clip>, Problem> {
+    let mut reader = Reader { document, buffers, read: HashMap::new() };
+    let mut left_out = LeftOut::default();
     let mut clips = Vec::new();
+    let most = buffers.size().saturating_mul(SAMPLES_PER_BYTE).saturating_add(SAMPLES).min(MAX_SAMPLES);
     let mut samples_so_far = 0usize;
-    for animation in document.animations() {
-        let name = animation.name().map_or_else(|| format!("animation{}", animation.index()), str::to_owned);
-        let mut tracks = Vec::new();
-        for channel in animation.channels() {
-            let target = channel.target();
-            match (skeleton.joint_of(target.node().index()), target.property()) {
-                (_, Property::MorphTargetWeights) => {
-                    notes.push(format!("morph targets of {name:?} are not read"))
-                }
-                (None, _) => {}
-                (Some(joint), property) => {
-                    tracks.push(Track::read(joint as usize, property, &channel, buffers)?)
-                }
-            }
-        }
-        let start = tracks.iter().filter_map(|t| t.times.first()).copied().fold(f32::INFINITY, f32::min);
-        let end = tracks.iter().filter_map(|t| t.times.last()).copied().fold(f32::NEG_INFINITY, f32::max);
+    for (index, animation) in document.animations.iter().enumerate() {
+        let name = animation.name.as_deref().map_or_else(|| format!("animation{index}"), text::name);
+        let tracks = reader.tracks(animation, skeleton, &mut left_out)?;
+        let times = || tracks.iter().map(|t| &t.keys.times);
+        let start = times().filter_map(|t| t.first()).copied().fold(f32::INFINITY, f32::min);
+        let end = times().filter_map(|t| t.last()).copied().fold(f32::NEG_INFINITY, f32::max);
         if !(end - start).is_finite() {
             continue;
         }
@@ -58,8 +82,14 @@ pub(super) fn clips(
         let frames = frames.saturating_add(1);
         let joint_count = skeleton.joints.len();
         samples_so_far = frames.saturating_mul(joint_count).saturating_add(samples_so_far);
-        check_samples(samples_so_far, 1, Place::Whole)?;
-        let mut samples = Vec::with_capacity(frames * joint_count);
+        if samples_so_far > most {
+            let text = format!(
+                "animation {name:?} lasts {:.0} s and has {joint_count} joints, which is above the limit of {most} samples for a file of this size; shorten it, or export fewer animations",
+                end - start
+            );
+            return Err(Problem::limit(Place::Whole, text));
+        }
+        let mut samples = with_room(frames * joint_count)?;
         for frame in 0..frames {
             let time = start + frame as f32 / RATE;
             let first = samples.len();
@@ -70,29 +100,88 @@ pub(super) fn clips(
         }
         clips.push(Clip { name, rate: f64::from(RATE), joint_count, samples });
     }
+    left_out.note(notes);
     Ok(clips)
 }
 
-impl Track {
-    fn read(
-        joint: usize,
-        property: Property,
-        channel: &gltf::animation::Channel<'_>,
-        buffers: &Buffers,
-    ) -> Result<Self, Problem> {
-        let sampler = channel.sampler();
-        let times: Vec<f32> = components::<1>(&sampler.input(), buffers, "times of an animation")?
+impl LeftOut {
+    fn note(&self, notes: &mut Vec<String>) {
+        if self.morphs > 0 {
+            notes.push(
+                "animated morph targets are left out, and the shape keeps their default weights; animate joints instead"
+                    .into(),
+            );
+        }
+        if self.others > 0 {
+            notes.push(format!(
+                "{} animation channels are left out, because they move no joint of the scene; animate joints instead",
+                self.others
+            ));
+        }
+        if self.repeated > 0 {
+            notes.push(format!(
+                "{} animation channels are left out, because a later one moves the same joint; export each once",
+                self.repeated
+            ));
+        }
+    }
+}
+
+impl Reader<'_> {
+    /// Reads the channels that move a joint: one for each property of a joint.
+    fn tracks(
+        &mut self,
+        animation: &Animation,
+        skeleton: &Skeleton,
+        left_out: &mut LeftOut,
+    ) -> Result<Vec<Track>, Problem> {
+        let mut tracks = Vec::new();
+        let mut moved = HashSet::new();
+        // From the last to the first, since the last one of a property counts.
+        for channel in animation.channels.iter().rev() {
+            let property = channel.target.path;
+            let node = channel.target.node;
+            if node.is_some_and(|node| node >= self.document.nodes.len()) {
+                return Err(Problem::whole("an animation channel refers to a missing object"));
+            }
+            let joint = node.and_then(|node| skeleton.joint_of(node));
+            match (property, joint) {
+                (Path::Weights, _) => left_out.morphs += 1,
+                (Path::Other, _) | (_, None) => left_out.others += 1,
+                (_, Some(joint)) if !moved.insert((joint, property)) => left_out.repeated += 1,
+                (_, Some(joint)) => {
+                    let keys = self.keys(animation, channel.sampler, property)?;
+                    tracks.push(Track { joint: joint as usize, property, keys });
+                }
+            }
+        }
+        tracks.reverse();
+        Ok(tracks)
+    }
+
+    /// Reads the keys of a sampler.
+    fn keys(&mut self, animation: &Animation, sampler: usize, property: Path) -> Result<Rc<Keys>, Problem> {
+        let sampler = animation.samplers.get(sampler);
+        let sampler =
+            sampler.ok_or_else(|| Problem::whole("an animation channel refers to a missing object"))?;
+        let is_rotation = property == Path::Rotation;
+        let key = (sampler.input, sampler.output, sampler.interpolation, is_rotation);
+        if let Some(keys) = self.read.get(&key) {
+            return Ok(keys.clone());
+        }
+        let (document, buffers) = (self.document, self.buffers);
+        let times: Vec<f32> = components::<1>(document, sampler.input, buffers, "times of an animation")?
             .iter()
             .map(|t| t[0] as f32)
             .collect();
-        let values: Vec<Vec4> = if property == Property::Rotation {
-            let values = components::<4>(&sampler.output(), buffers, "rotations of an animation")?;
+        let values: Vec<Vec4> = if is_rotation {
+            let values = components::<4>(document, sampler.output, buffers, "rotations of an animation")?;
             values.iter().map(|v| Vec4::from(v.map(|x| x as f32))).collect()
         } else {
-            let values = components::<3>(&sampler.output(), buffers, "values of an animation")?;
+            let values = components::<3>(document, sampler.output, buffers, "values of an animation")?;
             values.iter().map(|v| Vec3::from(v.map(|x| x as f32)).extend(0.0)).collect()
         };
-        let interpolation = sampler.interpolation();
+        let interpolation = sampler.interpolation;
         let per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
         if times.is_empty() || values.len() != times.len() * per_key {
             let text = format!("an animation has {} keys but {} values", times.len(), values.len());
@@ -102,15 +191,19 @@ impl Track {
         {
             return Err(Problem::whole("the keys of an animation are not finite, or not in order of time"));
         }
-        Ok(Self { joint, property, interpolation, times, values })
+        let keys = Rc::new(Keys { interpolation, times, values });
+        self.read.insert(key, keys.clone());
+        Ok(keys)
     }
+}
 
+impl Track {
     /// Sets this track's property of `local` to its value at `time` [s].
     fn apply(&self, time: f32, local: &mut Trs) {
         let value = self.at(time);
         match self.property {
-            Property::Translation => local.translation = value.truncate(),
-            Property::Scale => local.scale = value.truncate(),
+            Path::Translation => local.translation = value.truncate(),
+            Path::Scale => local.scale = value.truncate(),
             _ => {
                 if let Some(unit) = value.try_normalize() {
                     local.rotation = Quat::from_vec4(unit);
@@ -120,27 +213,27 @@ impl Track {
     }
 
     fn at(&self, time: f32) -> Vec4 {
-        let last = self.times.len() - 1;
-        let after = self.times.partition_point(|t| *t <= time);
-        let (i, j) = (after.saturating_sub(1), after.min(last));
-        let span = self.times[j] - self.times[i];
-        let t = if span > 0.0 { ((time - self.times[i]) / span).clamp(0.0, 1.0) } else { 0.0 };
-        match self.interpolation {
-            Interpolation::Step => self.values[i],
-            Interpolation::Linear if self.property == Property::Rotation => {
-                let (a, b) = (self.values[i].try_normalize(), self.values[j].try_normalize());
+        let Keys { interpolation, times, values } = &*self.keys;
+        let after = times.partition_point(|t| *t <= time);
+        let (i, j) = (after.saturating_sub(1), after.min(times.len() - 1));
+        let span = times[j] - times[i];
+        let t = if span > 0.0 { ((time - times[i]) / span).clamp(0.0, 1.0) } else { 0.0 };
+        match interpolation {
+            Interpolation::Step => values[i],
+            Interpolation::Linear if self.property == Path::Rotation => {
+                let (a, b) = (values[i].try_normalize(), values[j].try_normalize());
                 match a.zip(b) {
                     Some((a, b)) => Quat::from_vec4(a).slerp(Quat::from_vec4(b), t).into(),
-                    None => self.values[i],
+                    None => values[i],
                 }
             }
-            Interpolation::Linear => self.values[i].lerp(self.values[j], t),
+            Interpolation::Linear => values[i].lerp(values[j], t),
             Interpolation::CubicSpline => {
                 let (t2, t3) = (t * t, t * t * t);
-                let (out, into) = (self.values[3 * i + 2] * span, self.values[3 * j] * span);
-                self.values[3 * i + 1] * (2.0 * t3 - 3.0 * t2 + 1.0)
+                let (out, into) = (values[3 * i + 2] * span, values[3 * j] * span);
+                values[3 * i + 1] * (2.0 * t3 - 3.0 * t2 + 1.0)
                     + out * (t3 - 2.0 * t2 + t)
-                    + self.values[3 * j + 1] * (3.0 * t2 - 2.0 * t3)
+                    + values[3 * j + 1] * (3.0 * t2 - 2.0 * t3)
                     + into * (t3 - t2)
             }
         }

@@ -1,66 +1,74 @@
 //! The container of a glTF file: GLB chunks or plain JSON, and the bytes of its buffers.
 
-use super::accessor::Buffers;
-use crate::{Place, Problem, bytes::Bytes};
-use base64::{Engine, engine::general_purpose::STANDARD};
-use gltf::{
-    Document,
-    buffer::Source,
-    json::{Path, validation::Validate},
+use super::{
+    accessor::Buffers,
+    json::{self, Document},
 };
+use crate::{Place, Problem, bytes::Bytes};
+use base64::{
+    Engine,
+    alphabet::STANDARD,
+    engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
+};
+use std::{borrow::Cow, collections::HashMap};
 
-/// Opens a `.glb` or `.gltf` file and loads its buffers. `sibling` returns the bytes of a file next to it.
-pub(super) fn open(
-    data: &[u8],
+/// Largest size of all buffers together [bytes].
+const MAX_BUFFERS: u64 = 4 << 30;
+
+/// Some programs leave out the padding.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// Opens a `.glb` or `.gltf` file and loads its buffers, each file once. `sibling` returns the bytes of a file
+/// next to it.
+pub(super) fn open<'a>(
+    data: &'a [u8],
     sibling: &dyn Fn(&str) -> Option<Vec<u8>>,
-) -> Result<(Document, Buffers), Problem> {
+) -> Result<(Document, Buffers<'a>), Problem> {
     let (json, mut blob) = if data.starts_with(b"glTF") { chunks(data)? } else { (data, None) };
-    let invalid = |e: &dyn std::fmt::Display| {
-        Problem::whole(format!("not a valid glTF file: {}", first_line(&e.to_string())))
-    };
-    let root = gltf::json::Root::from_slice(json).map_err(|e| invalid(&e))?;
-    trusted_indices(&root)?;
-    let document = Document::from_json(root).map_err(|e| invalid(&e))?;
-    let mut buffers = Vec::new();
-    for buffer in document.buffers() {
-        let bytes = match buffer.source() {
-            Source::Bin => {
-                blob.take().ok_or_else(|| Problem::whole("the file's binary chunk is missing"))?.to_vec()
-            }
-            Source::Uri(uri) => resolve(uri, sibling)?,
+    let document = json::parse(json)?;
+    let mut stored: Vec<Cow<'a, [u8]>> = Vec::new();
+    let mut files: HashMap<String, usize> = HashMap::new();
+    let (mut of, mut total) = (Vec::new(), 0u64);
+    for (index, buffer) in document.buffers.iter().enumerate() {
+        let slot = match &buffer.uri {
+            // A buffer without bytes is a placeholder for compressed ones. It may exist, but not be used.
+            None => blob.take().map(|bytes| {
+                stored.push(Cow::Borrowed(bytes));
+                stored.len() - 1
+            }),
+            Some(uri) => match uri.strip_prefix("data:") {
+                Some(encoded) => {
+                    stored.push(Cow::Owned(decoded(encoded)?));
+                    Some(stored.len() - 1)
+                }
+                None => {
+                    let name = file_name(uri)?;
+                    Some(match files.get(&name) {
+                        Some(slot) => *slot,
+                        None => {
+                            stored.push(Cow::Owned(beside(&name, uri, sibling)?));
+                            total = total.saturating_add(stored[stored.len() - 1].len() as u64);
+                            files.insert(name, stored.len() - 1);
+                            stored.len() - 1
+                        }
+                    })
+                }
+            },
         };
-        if bytes.len() < buffer.length() {
-            let (have, want) = (bytes.len(), buffer.length());
-            return Err(Problem::whole(format!(
-                "buffer {} has {have} bytes, but {want} are declared",
-                buffer.index()
-            )));
+        if total > MAX_BUFFERS {
+            let text = format!("its buffers have more than {MAX_BUFFERS} bytes; export fewer objects");
+            return Err(Problem::limit(Place::Whole, text));
         }
-        buffers.push(bytes);
+        let (have, want) = (slot.map_or(usize::MAX, |slot| stored[slot].len()), buffer.byte_length);
+        if have < want {
+            return Err(Problem::whole(format!("buffer {index} has {have} bytes, but {want} are declared")));
+        }
+        of.push(slot);
     }
-    Ok((document, Buffers(buffers)))
-}
-
-/// Checks the indices that the `gltf` crate's own validation and iterators use without checking.
-fn trusted_indices(root: &gltf::json::Root) -> Result<(), Problem> {
-    for animation in &root.animations {
-        // The crate validates samplers, but not channels.
-        let mut lost = animation.channels.iter().any(|c| c.sampler.value() >= animation.samplers.len());
-        for channel in &animation.channels {
-            channel.target.validate(root, Path::new, &mut |_, _| lost = true);
-        }
-        if lost {
-            return Err(Problem::whole(
-                "an animation channel refers to a missing object or to an unknown property",
-            ));
-        }
-    }
-    for primitive in root.meshes.iter().flat_map(|m| &m.primitives) {
-        if primitive.attributes.values().any(|a| a.value() >= root.accessors.len()) {
-            return Err(Problem::whole("a mesh names an accessor that the file does not have"));
-        }
-    }
-    Ok(())
+    Ok((document, Buffers::new(data.len(), stored, of)))
 }
 
 /// Returns the JSON and the binary chunk of a GLB.
@@ -90,22 +98,47 @@ fn chunks(data: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     Ok((json, blob))
 }
 
-/// Returns the bytes of a buffer that is named by a URI: embedded in the URI, or in a file next to this one.
-fn resolve(uri: &str, sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Vec<u8>, Problem> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        let encoded = data.split_once(";base64,").map(|(_, e)| e);
-        let decoded = encoded.and_then(|e| STANDARD.decode(e).ok());
-        return decoded.ok_or_else(|| Problem::whole("a buffer's data URI is not base64"));
-    }
+/// Decodes the rest of a data URI.
+fn decoded(encoded: &str) -> Result<Vec<u8>, Problem> {
+    let encoded = encoded.split_once(";base64,").map(|(_, e)| e);
+    let decoded = encoded.and_then(|e| BASE64.decode(e).ok());
+    decoded.ok_or_else(|| Problem::whole("a buffer's data URI is not base64"))
+}
+
+/// Returns the name of the file that a relative URI refers to (RFC 3986): `%20` is a space, and `./` is the same
+/// folder.
+fn file_name(uri: &str) -> Result<String, Problem> {
     if uri.contains("://") {
         return Err(Problem::whole(format!(
             "the buffer {uri:?} is on a network; put the file next to this one"
         )));
     }
-    sibling(uri).ok_or_else(|| Problem::whole(format!("its buffer {uri:?} was not found next to it")))
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, after @ ..] = rest {
+        let code = match rest {
+            [b'%', a, b, ..] => hex(*a).zip(hex(*b)).map(|(a, b)| 16 * a + b),
+            _ => None,
+        };
+        bytes.push(code.unwrap_or(*first));
+        rest = if code.is_some() { &rest[3..] } else { after };
+    }
+    let name = String::from_utf8(bytes).unwrap_or_else(|_| uri.to_owned());
+    let parts: Vec<&str> = name.split('/').filter(|part| *part != "." && !part.is_empty()).collect();
+    // An absolute path stays one, which the caller refuses.
+    Ok(if name.starts_with('/') { name } else { parts.join("/") })
 }
 
-/// The first line of a message, cut at 300 characters.
-fn first_line(text: &str) -> String {
-    text.lines().next().unwrap_or_default().chars().take(300).collect()
+fn hex(digit: u8) -> Option<u8> {
+    (digit as char).to_digit(16).map(|d| d as u8)
+}
+
+/// Reads the file `name`, or the file with the literal name `uri`: some programs do not encode it.
+fn beside(name: &str, uri: &str, sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Vec<u8>, Problem> {
+    let literal = || (name != uri).then(|| sibling(uri)).flatten();
+    sibling(name).or_else(literal).ok_or_else(|| {
+        Problem::whole(format!(
+            "its buffer {name:?} was not found next to it, or is no file that can be read"
+        ))
+    })
 }

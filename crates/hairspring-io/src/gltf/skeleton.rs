@@ -4,14 +4,20 @@
 //! The rest pose is the bind pose: the transforms of a skin's joints when its mesh is undeformed. It is moved
 //! into the scene by M, the transform of the skin's first root joint: vertices v become M v, and inverse bind
 //! matrices B become B M⁻¹. Every pose is then exactly the one that the file describes.
+//!
+//! A body has one rest pose, but skins of one skeleton may have different bind poses. A later skin is placed at the
+//! joints that earlier skins have bound. If its matrices still differ at a joint by C = B₁⁻¹ B₂, its vertices move
+//! by their weighted C into the rest pose.
 
 use super::{
     accessor::{Buffers, components},
     invertible,
+    json::{self, Document},
 };
-use crate::{Place, Problem};
+use crate::{Place, Problem, text};
 use glam::{Affine3A, Mat4, Quat, Vec3};
 use hairspring::body::{Joint, Trs};
+use std::collections::HashMap;
 
 /// The joints of one skin, and the transform of its meshes.
 pub(super) struct SkinPlace {
@@ -19,6 +25,9 @@ pub(super) struct SkinPlace {
     pub joints: Vec<u16>,
     /// Transforms a vertex of the skin's meshes into the rest pose.
     pub placed: Affine3A,
+    /// What moves a placed vertex from the bind pose of this skin to the rest pose, for each joint that it
+    /// follows; shape `[joints]`, or empty if the two poses are the same.
+    pub corrections: Vec<Affine3A>,
 }
 
 /// The joints of a file.
@@ -41,18 +50,22 @@ pub(super) struct Skeleton {
 }
 
 impl Skeleton {
-    pub(super) fn read(document: &gltf::Document, buffers: &Buffers) -> Result<Self, Problem> {
-        let (order, parents, reached) = walk(document)?;
-        let needed = needed(document, &parents, &reached);
-        let nodes: Vec<gltf::Node<'_>> = document.nodes().collect();
+    pub(super) fn read(
+        document: &Document,
+        buffers: &Buffers<'_>,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, Problem> {
+        let (order, parents, reached) = walk(document, notes)?;
+        let needed = needed(document, &parents, &reached)?;
+        let nodes = &document.nodes;
         let mut joint_of: Vec<Option<u16>> = vec![None; nodes.len()];
         let (mut joints, mut defaults) = (Vec::new(), Vec::new());
         for &n in order.iter().filter(|n| needed[**n]) {
             let index = u16::try_from(joints.len())
                 .map_err(|_| Problem::limit(Place::Whole, "more than 65,536 joints"))?;
             joint_of[n] = Some(index);
-            let rest = local(&nodes[n])?;
-            let name = nodes[n].name().map_or_else(|| format!("node{n}"), str::to_owned);
+            let rest = local(&nodes[n], n)?;
+            let name = nodes[n].name.as_deref().map_or_else(|| format!("node{n}"), text::name);
             joints.push(Joint { name, parent: parents[n].and_then(|p| joint_of[p]).map(u32::from), rest });
             defaults.push(rest);
         }
@@ -65,7 +78,7 @@ impl Skeleton {
             reached,
             world: Vec::new(),
         };
-        skeleton.bind(document, buffers)?;
+        skeleton.bind(document, buffers, notes)?;
         Ok(skeleton)
     }
 
@@ -86,39 +99,68 @@ impl Skeleton {
     }
 
     /// Moves joints into the bind pose and fills the inverse bind matrices.
-    fn bind(&mut self, document: &gltf::Document, buffers: &Buffers) -> Result<(), Problem> {
+    fn bind(
+        &mut self,
+        document: &Document,
+        buffers: &Buffers<'_>,
+        notes: &mut Vec<String>,
+    ) -> Result<(), Problem> {
         let node_world = world(&self.joints, |j| self.defaults[j].to_affine());
+        let mut skins = Vec::with_capacity(document.skins.len());
+        for (index, skin) in document.skins.iter().enumerate() {
+            skins.push(self.skin_of(document, skin, index, buffers)?);
+        }
+        // Skins of parents come first, because the rest pose of a joint depends on that of its parents.
+        let root = |skin: &SkinOf| skin.joints.iter().copied().min();
+        let mut order: Vec<usize> = (0..skins.len()).collect();
+        order.sort_by_key(|s| root(&skins[*s]));
         let mut bound: Vec<Option<Affine3A>> = vec![None; self.joints.len()];
-        for skin in document.skins() {
-            let joints: Option<Vec<u16>> = skin.joints().map(|n| self.joint_of[n.index()]).collect();
-            let joints = joints.ok_or_else(|| {
-                Problem::whole(format!("skin {} has a joint outside the scene", skin.index()))
-            })?;
-            let binds = match skin.inverse_bind_matrices() {
-                Some(accessor) => components::<16>(&accessor, buffers, "inverse bind matrices")?
-                    .iter()
-                    .map(|m| Affine3A::from_mat4(Mat4::from_cols_array(&m.map(|x| x as f32))))
-                    .collect(),
-                None => vec![Affine3A::IDENTITY; joints.len()],
-            };
-            if binds.len() < joints.len() {
-                return Err(Problem::whole(format!(
-                    "skin {} has fewer inverse bind matrices than joints",
-                    skin.index()
-                )));
-            }
+        let mut places: Vec<Option<SkinPlace>> = skins.iter().map(|_| None).collect();
+        for s in order {
+            let SkinOf { joints, binds } = std::mem::take(&mut skins[s]);
+            let singular = || Problem::whole(format!("skin {s} has a matrix that cannot be inverted"));
             // The root is the joint with the lowest index, since parents come before children.
             let root = joints.iter().zip(&binds).min_by_key(|(j, _)| **j);
-            let placed = root.map_or(Affine3A::IDENTITY, |(j, b)| node_world[*j as usize] * *b);
-            let singular =
-                || Problem::whole(format!("skin {} has a matrix that cannot be inverted", skin.index()));
+            let placed = match root {
+                Some((j, b)) => self.rest_world(&bound, &node_world, *j, buffers)? * *b,
+                None => Affine3A::IDENTITY,
+            };
             let placed = invertible(placed).ok_or_else(singular)?;
-            for (j, bind) in joints.iter().zip(&binds) {
-                let bind = invertible(*bind * placed.inverse()).ok_or_else(singular)?;
-                bound[*j as usize].get_or_insert(bind);
+            let back = placed.inverse();
+            let mut corrections = vec![Affine3A::IDENTITY; joints.len()];
+            let mut slots: Vec<usize> = (0..joints.len()).collect();
+            slots.sort_by_key(|slot| joints[*slot]);
+            // The correction of each joint of this skin, for the joints below it.
+            let mut corrected: HashMap<u16, Affine3A> = HashMap::new();
+            for slot in slots {
+                let j = joints[slot];
+                let bind = invertible(binds[slot] * back).ok_or_else(singular)?;
+                corrections[slot] = match bound[j as usize] {
+                    // An earlier skin has another bind pose: the vertices are moved to that one.
+                    Some(earlier) => {
+                        let correction = earlier.inverse() * bind;
+                        if is_identity(correction) { Affine3A::IDENTITY } else { correction }
+                    }
+                    None => {
+                        let correction = self.ancestor(&corrected, j, buffers)?.unwrap_or(Affine3A::IDENTITY);
+                        let moved =
+                            if correction == Affine3A::IDENTITY { bind } else { bind * correction.inverse() };
+                        bound[j as usize] = Some(moved);
+                        correction
+                    }
+                };
+                corrected.insert(j, corrections[slot]);
             }
-            self.skins.push(SkinPlace { joints, placed });
+            let differs = corrections.iter().any(|c| *c != Affine3A::IDENTITY);
+            if differs {
+                notes.push(format!(
+                    "skin {s} has another bind pose than a skin before it, and its mesh is moved to that one; export all meshes in one rest pose if a joint looks pinched"
+                ));
+            }
+            let corrections = if differs { corrections } else { Vec::new() };
+            places[s] = Some(SkinPlace { joints, placed, corrections });
         }
+        self.skins = places.into_iter().flatten().collect();
         let mut rest: Vec<Affine3A> = Vec::with_capacity(self.joints.len());
         for (j, joint) in self.joints.iter_mut().enumerate() {
             let parent = joint.parent.map_or(Affine3A::IDENTITY, |p| rest[p as usize]);
@@ -142,23 +184,114 @@ impl Skeleton {
         self.world = rest;
         Ok(())
     }
+
+    /// Reads a skin's joints and inverse bind matrices.
+    fn skin_of(
+        &self,
+        document: &Document,
+        skin: &json::Skin,
+        index: usize,
+        buffers: &Buffers<'_>,
+    ) -> Result<SkinOf, Problem> {
+        let joint = |n: &usize| self.joint_of.get(*n).copied().flatten();
+        let joints: Option<Vec<u16>> = skin.joints.iter().map(joint).collect();
+        let joints =
+            joints.ok_or_else(|| Problem::whole(format!("skin {index} has a joint outside the scene")))?;
+        let binds = match skin.inverse_bind_matrices {
+            Some(accessor) => components::<16>(document, accessor, buffers, "inverse bind matrices")?
+                .iter()
+                .map(|m| Affine3A::from_mat4(Mat4::from_cols_array(&m.map(|x| x as f32))))
+                .collect(),
+            None => vec![Affine3A::IDENTITY; joints.len()],
+        };
+        if binds.len() < joints.len() {
+            return Err(Problem::whole(format!("skin {index} has fewer inverse bind matrices than joints")));
+        }
+        Ok(SkinOf { joints, binds })
+    }
+
+    /// Returns the rest transform of joint `j` in world space: that of the skin that binds it or, above or
+    /// without any, by the node's own transforms.
+    fn rest_world(
+        &self,
+        bound: &[Option<Affine3A>],
+        node_world: &[Affine3A],
+        j: u16,
+        buffers: &Buffers<'_>,
+    ) -> Result<Affine3A, Problem> {
+        let (mut at, mut below) = (usize::from(j), Affine3A::IDENTITY);
+        loop {
+            if let Some(bind) = bound[at] {
+                return Ok(bind.inverse() * below);
+            }
+            buffers.spend(1)?;
+            below = self.defaults[at].to_affine() * below;
+            match self.joints[at].parent {
+                Some(parent) => at = parent as usize,
+                None => return Ok(node_world[usize::from(j)]),
+            }
+        }
+    }
+
+    /// Returns the value of the nearest ancestor of joint `j` that has one.
+    fn ancestor(
+        &self,
+        values: &HashMap<u16, Affine3A>,
+        j: u16,
+        buffers: &Buffers<'_>,
+    ) -> Result<Option<Affine3A>, Problem> {
+        let mut at = self.joints[usize::from(j)].parent;
+        while let Some(parent) = at {
+            if let Some(value) = values.get(&(parent as u16)) {
+                return Ok(Some(*value));
+            }
+            buffers.spend(1)?;
+            at = self.joints[parent as usize].parent;
+        }
+        Ok(None)
+    }
+}
+
+/// A skin of the file.
+#[derive(Default)]
+struct SkinOf {
+    /// Shape `[joints]`.
+    joints: Vec<u16>,
+    /// Inverse bind matrices; shape `[joints]`, or longer.
+    binds: Vec<Affine3A>,
+}
+
+/// Whether a correction of a bind pose is only rounding: below 0.1 mm within a meter.
+fn is_identity(correction: Affine3A) -> bool {
+    correction.abs_diff_eq(Affine3A::IDENTITY, 1e-4)
 }
 
 /// Lists the nodes of the scene with parents first, the parent of each node, and which nodes are reached.
 #[allow(clippy::type_complexity)]
-fn walk(document: &gltf::Document) -> Result<(Vec<usize>, Vec<Option<usize>>, Vec<bool>), Problem> {
-    let count = document.nodes().len();
-    let children: Vec<Vec<usize>> =
-        document.nodes().map(|n| n.children().map(|c| c.index()).collect()).collect();
+fn walk(
+    document: &Document,
+    notes: &mut Vec<String>,
+) -> Result<(Vec<usize>, Vec<Option<usize>>, Vec<bool>), Problem> {
+    let count = document.nodes.len();
     let mut parents: Vec<Option<usize>> = vec![None; count];
-    for (n, list) in children.iter().enumerate() {
-        list.iter().for_each(|c| parents[*c] = Some(n));
+    let missing = |n: usize| Problem::whole(format!("node {n} is named, but the file has {count} nodes"));
+    for (n, node) in document.nodes.iter().enumerate() {
+        for c in &node.children {
+            *parents.get_mut(*c).ok_or_else(|| missing(*c))? = Some(n);
+        }
     }
-    let scene = document.default_scene().or_else(|| document.scenes().next());
-    let mut stack: Vec<usize> = match scene {
-        Some(scene) => scene.nodes().map(|n| n.index()).collect(),
-        None => (0..count).filter(|n| parents[*n].is_none()).collect(),
+    let scene = document.scene.and_then(|s| document.scenes.get(s)).or(document.scenes.first());
+    let listed = scene.map_or(&[][..], |scene| &scene.nodes);
+    if let Some(n) = listed.iter().find(|n| **n >= count) {
+        return Err(missing(*n));
+    }
+    let mut stack: Vec<usize> = match listed {
+        [] => (0..count).filter(|n| parents[*n].is_none()).collect(),
+        listed => listed.to_vec(),
     };
+    if scene.is_some() && listed.is_empty() && count > 0 {
+        notes.push("the scene of the file lists no objects, so all are read; export one scene".into());
+    }
     stack.iter().for_each(|n| parents[*n] = None);
     stack.reverse();
     let (mut order, mut reached) = (Vec::new(), vec![false; count]);
@@ -169,7 +302,7 @@ fn walk(document: &gltf::Document) -> Result<(Vec<usize>, Vec<Option<usize>>, Ve
             )));
         }
         order.push(n);
-        for c in children[n].iter().rev() {
+        for c in document.nodes[n].children.iter().rev() {
             parents[*c] = Some(n);
             stack.push(*c);
         }
@@ -179,32 +312,48 @@ fn walk(document: &gltf::Document) -> Result<(Vec<usize>, Vec<Option<usize>>, Ve
 
 /// Marks the nodes that must be joints: those that skins, animations and rigid meshes use, and all their
 /// ancestors.
-fn needed(document: &gltf::Document, parents: &[Option<usize>], reached: &[bool]) -> Vec<bool> {
+fn needed(document: &Document, parents: &[Option<usize>], reached: &[bool]) -> Result<Vec<bool>, Problem> {
     let mut needed = vec![false; parents.len()];
-    let skins = document.skins().flat_map(|s| s.joints().map(|n| n.index()).collect::<Vec<_>>());
-    let animated = document
-        .animations()
-        .flat_map(|a| a.channels().map(|c| c.target().node().index()).collect::<Vec<_>>());
-    let rigid = document.nodes().filter(|n| n.mesh().is_some() && n.skin().is_none()).map(|n| n.index());
-    for first in skins.chain(animated).chain(rigid).filter(|n| reached[*n]).collect::<Vec<_>>() {
-        let mut at = Some(first);
+    let skins = document.skins.iter().flat_map(|s| &s.joints).copied();
+    let channels = document.animations.iter().flat_map(|a| &a.channels);
+    let animated = channels.filter_map(|c| c.target.node);
+    let meshes = document.nodes.iter().enumerate().filter_map(|(n, node)| Some((n, node.mesh?, node.skin)));
+    let is_rigid: Vec<bool> =
+        document.meshes.iter().map(|m| m.primitives.iter().any(|p| !p.attributes.has_joints())).collect();
+    let rigid = meshes
+        .filter(|(_, mesh, skin)| skin.is_none() || is_rigid.get(*mesh).copied().unwrap_or(false))
+        .map(|(n, ..)| n);
+    for first in skins.chain(animated).chain(rigid) {
+        let is_reached = reached.get(first).ok_or_else(|| {
+            Problem::whole(format!("node {first} is named, but the file has {} nodes", parents.len()))
+        })?;
+        let mut at = Some(first).filter(|_| *is_reached);
         while let Some(n) = at.filter(|n| !needed[*n]) {
             needed[n] = true;
             at = parents[n];
         }
     }
-    needed
+    Ok(needed)
 }
 
-/// A node's local transform.
-fn local(node: &gltf::Node<'_>) -> Result<Trs, Problem> {
-    let (t, r, s) = node.transform().decomposed();
-    let trs = Trs { translation: Vec3::from(t), rotation: Quat::from_array(r), scale: Vec3::from(s) };
+/// The local transform of node `index`.
+fn local(node: &json::Node, index: usize) -> Result<Trs, Problem> {
+    let trs = match &node.matrix {
+        Some(matrix) => {
+            let (scale, rotation, translation) =
+                Mat4::from_cols_array(matrix).to_scale_rotation_translation();
+            Trs { translation, rotation, scale }
+        }
+        None => Trs {
+            translation: node.translation.map_or(Vec3::ZERO, Vec3::from),
+            rotation: node.rotation.map_or(Quat::IDENTITY, Quat::from_array),
+            scale: node.scale.map_or(Vec3::ONE, Vec3::from),
+        },
+    };
     let length = trs.rotation.length();
     if !(trs.translation.is_finite() && trs.scale.is_finite() && length.is_finite() && length > 1e-6) {
         return Err(Problem::whole(format!(
-            "the transform of node {} is not finite, or its rotation is zero",
-            node.index()
+            "the transform of node {index} is not finite, or its rotation is zero"
         )));
     }
     Ok(Trs { rotation: trs.rotation.normalize(), ..trs })

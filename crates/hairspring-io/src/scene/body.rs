@@ -77,6 +77,8 @@ impl Reader<'_> {
         let mesh = obj::parse(&mesh).map_err(|p| p.in_file(&self.resolve(&named.file)))?;
         let mut character =
             makehuman::parse(mesh, &rig_data, &weight_data).map_err(|p| p.in_file(&self.resolve(rig)))?;
+        let parts = character.body.mesh.parts.iter_mut().map(|part| &mut part.name);
+        load::make_printable(parts.chain(character.body.joints.iter_mut().map(|joint| &mut joint.name)));
         let turn = units::turn_of(options.up.unwrap_or(crate::Axis::Y));
         units::apply_to_body(&mut character.body, &mut [], options.scale.unwrap_or(makehuman::SCALE), turn);
         Ok(character)

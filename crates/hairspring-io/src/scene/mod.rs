@@ -10,6 +10,7 @@ mod geometry;
 mod groom;
 mod groom_file;
 mod grow;
+mod hull_points;
 mod material;
 mod motion;
 pub mod parameters;
@@ -58,7 +59,7 @@ pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
     let mut scene = reader.settings(&file)?;
     reader.geometry(&file, &mut scene)?;
     let Reader { repairs, notes, .. } = reader;
-    Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs, notes })
+    Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs, notes: load::plain(notes) })
 }
 
 /// Reads only the settings of such a text, for `Stage::update_settings`. This is fast. The scene is that of
@@ -155,8 +156,18 @@ impl<'a> Reader<'a> {
         let file = toml::Spanned::new(near..near, file.clone());
         let path = self.resolve(&file);
         let loaded = self.named(read_body(&path, &ReadOptions { scale: *scale, up: None }), &file, "hull")?;
-        self.note(&path, loaded.notes);
-        let shape = Shape::Hull { points: loaded.value.body.mesh.positions, file: None, scale: None };
+        let vertices = loaded.value.body.mesh.positions;
+        let (count, points) = (vertices.len(), hull_points::outermost(vertices));
+        let mut notes = loaded.notes;
+        if points.len() < count {
+            notes.push(format!(
+                "the hull of its {count} vertices is made of the {} outermost; use a mesh of at most {} vertices to choose them",
+                points.len(),
+                Shape::MAX_POINTS
+            ));
+        }
+        self.note(&path, notes);
+        let shape = Shape::Hull { points, file: None, scale: None };
         if shape.obstacle().is_none() {
             let text = format!("the vertices of {} span no volume", path.display());
             return Err(self.wrong(near, "shape", text));

@@ -41,6 +41,7 @@ pub fn all() -> Vec<Sample> {
         ("tfxbone", bones(), |b| tfxbone::parse(b).map(drop)),
         ("tfxmesh", skinned_mesh().into_bytes(), |b| tfxmesh::parse(b).map(drop)),
         ("obj", mesh().into_bytes(), |b| obj::parse(b).map(drop)),
+        ("obj-strands", strands().into_bytes(), |b| obj::parse_groom(b).map(drop)),
         ("bvh", motion().into_bytes(), |b| bvh::parse(b).map(drop)),
         ("glb", glb(), |b| gltf::parse(b, &|_| None).map(drop)),
         ("rig", RIG.into(), |b| makehuman::parse(obj::parse(mesh().as_bytes())?, b, WEIGHTS).map(drop)),
@@ -97,6 +98,11 @@ pub fn mesh() -> String {
     "o thing\nv 0 0 0\nv 1 0 0\nv 1 0 -1\nv 0 0 -1\nv 0 1 0\nvt 0 0\nvt 1 1\ng floor\nf 1/1 2/2 3/1 4\n\
      g joint-a\nf -1//1 1 2\n"
         .into()
+}
+
+/// The text of an `.obj` with two polylines.
+fn strands() -> String {
+    "v 0 0 0\nv 0 1 0\nv 0 2 0.5\nvt 0.5\ng hair\nl 1/1 2 \\\n 3\nl -3 -1\n".into()
 }
 
 fn motion() -> String {

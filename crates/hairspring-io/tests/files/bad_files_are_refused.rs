@@ -142,7 +142,8 @@ fn the_error_has_file_place_and_remedy() {
     assert!(error.to_string().contains("no strands"), "{error}");
 
     assert_eq!(read_groom(&path("none.hair"), &options).unwrap_err().kind(), ErrorKind::NotFound);
-    assert_eq!(read_groom(&path("b.obj"), &options).unwrap_err().kind(), ErrorKind::Unsupported);
+    assert_eq!(read_groom(&path("b.obj"), &options).unwrap_err().kind(), ErrorKind::Malformed);
+    assert_eq!(read_groom(&path("b.bvh"), &options).unwrap_err().kind(), ErrorKind::Unsupported);
     let wrong = ReadOptions { scale: Some(0.0), ..options };
     assert_eq!(read_groom(&path("a.hair"), &wrong).unwrap_err().kind(), ErrorKind::Unsupported);
     fs::create_dir(path("folder.hair")).unwrap();

@@ -1,11 +1,16 @@
 //! Promises of the readers and writers of grooms, bodies and motions. Each file is one promise.
 
+#[path = "../common/gltf_file.rs"]
+mod gltf_file;
 #[path = "../common/samples.rs"]
 mod samples;
 
 mod bad_files_are_refused;
 mod example_meshes_are_made_by_code;
+mod gltf_files_of_exporters_are_read;
 mod grooms_round_trip;
 mod headless_bake_runs;
+mod hostile_files_are_bounded;
+mod obj_files_of_exporters_are_read;
 mod real_files_are_read;
 mod real_grooms_stay_on_real_heads;

@@ -52,7 +52,7 @@ fn with_the_same_bits_as_a_new_simulation() {
         ("projection_iterations", material(), Solver { projection_iterations: 0, ..solver() }),
         ("quality", material(), Solver { quality: Quality::High, ..solver() }),
         ("inertia", material(), Solver { inertia: 0.3, ..solver() }),
-        ("teleport_distance", material(), Solver { teleport_distance: 0.005, ..solver() }),
+        ("teleport_distance", material(), Solver { teleport_distance: 1e-4, ..solver() }),
     ];
     let unchanged = later(&mut running());
     for (name, material, solver) in changes {

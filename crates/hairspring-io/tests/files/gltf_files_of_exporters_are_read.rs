@@ -1,0 +1,453 @@
+//! Promise: a glTF file is read as exporters write it. What is not used is skipped, also if it is required. What is
+//! left out is in a note, and what cannot be read is refused with a sentence that names the export option.
+//!
+//! Every case is made in code, after files that exporters write.
+
+use crate::gltf_file::{GltfFile, TETRAHEDRON};
+use glam::{Affine3A, Quat, Vec3};
+use hairspring_io::{Character, Problem, ReadOptions, gltf, read_body, read_motion};
+use serde_json::json;
+use std::{cell::RefCell, fs};
+
+fn read(file: &GltfFile) -> (Character, Vec<String>) {
+    gltf::parse(&file.glb(), &|_| None).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn refused(file: &GltfFile) -> Problem {
+    gltf::parse(&file.glb(), &|_| None).unwrap_err()
+}
+
+/// Reads a file that must give the tetrahedron, and returns its notes.
+fn read_tetrahedron(file: &GltfFile) -> Vec<String> {
+    let (character, notes) = read(file);
+    let mesh = &character.body.mesh;
+    assert_eq!(mesh.positions, TETRAHEDRON.map(Vec3::from));
+    assert_eq!(mesh.triangles.len(), 4);
+    assert!(mesh.positions.iter().zip(&mesh.normals).all(|(_, n)| n.is_normalized()));
+    notes
+}
+
+/// There is one note with each of `texts`.
+fn assert_noted_once(notes: &[String], texts: &[&str]) {
+    for text in texts {
+        assert_eq!(notes.iter().filter(|n| n.contains(text)).count(), 1, "{text:?}: {notes:?}");
+    }
+    assert_eq!(notes.len(), texts.len(), "{notes:?}");
+}
+
+#[test]
+fn custom_attributes_are_skipped() {
+    let mut file = GltfFile::tetrahedron();
+    let custom = file.floats("SCALAR", &[0.0, 1.0, 2.0, 3.0]);
+    for name in ["_ROOT_DENSITY", "_0", "TANGENT", "TEXCOORD_7", "COLOR_3", "FROM_THE_FUTURE"] {
+        file.primitive()["attributes"][name] = json!(custom);
+    }
+    assert!(read_tetrahedron(&file).is_empty());
+    // Not even a missing accessor matters, since it is not read.
+    file.primitive()["attributes"]["_LOST"] = json!(99);
+    assert!(read_tetrahedron(&file).is_empty());
+}
+
+#[test]
+fn textures_and_materials_of_any_extension_are_skipped() {
+    for name in [
+        "EXT_texture_webp",
+        "KHR_texture_basisu",
+        "KHR_texture_transform",
+        "KHR_materials_unlit",
+        "KHR_materials_variants",
+        "KHR_materials_pbrSpecularGlossiness",
+        "KHR_lights_punctual",
+        "KHR_mesh_quantization",
+        "VRMC_vrm",
+    ] {
+        let mut file = GltfFile::tetrahedron();
+        file.json["extensionsUsed"] = json!([name]);
+        file.json["extensionsRequired"] = json!([name]);
+        file.json["extensions"] = json!({name: {"lights": [{"type": "neon"}]}});
+        file.json["images"] = json!([{"uri": "skin.webp"}, {"mimeType": "image/ktx2", "bufferView": 77}]);
+        file.json["samplers"] = json!([{"magFilter": 1}]);
+        file.json["textures"] = json!([{"sampler": 0, "extensions": {name: {"source": 0}}}, {}]);
+        file.json["materials"] = json!([{
+            "name": "skin", "alphaMode": "DITHER", "extensions": {name: {}}, "normalTexture": {"index": 9},
+            "pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions": {name: {"scale": [2, 2]}}},
+                "baseColorFactor": [0.25, 0.5, 1.0, 1.0]}
+        }]);
+        file.json["cameras"] = json!([{"type": "fisheye"}]);
+        file.primitive()["material"] = json!(0);
+        file.primitive()["extensions"] = json!({name: {"mappings": []}});
+        assert!(read_tetrahedron(&file).is_empty(), "{name}");
+        assert_eq!(read(&file).0.body.mesh.parts[0].color, Vec3::new(0.25, 0.5, 1.0));
+    }
+    let mut file = GltfFile::tetrahedron();
+    file.json["extensionsRequired"] = json!(["ACME_nurbs"]);
+    assert!(refused(&file).text.contains("\"ACME_nurbs\""), "{}", refused(&file));
+}
+
+#[test]
+fn compressed_meshes_are_refused_with_their_export_option() {
+    for (name, option) in [
+        ("KHR_draco_mesh_compression", "without Draco"),
+        ("EXT_meshopt_compression", "without meshopt"),
+        ("KHR_meshopt_compression", "without meshopt"),
+    ] {
+        let mut file = GltfFile::tetrahedron();
+        file.json["extensionsRequired"] = json!(["KHR_texture_transform", name]);
+        let text = refused(&file).text;
+        assert!(text.contains(name) && text.contains(option) && !text.contains('\n'), "{text}");
+    }
+    // Draco that is used but not required: accessors without bytes.
+    let mut file = GltfFile::tetrahedron();
+    file.primitive()["extensions"] =
+        json!({"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}});
+    assert!(read_tetrahedron(&file).is_empty());
+    for accessor in file.json["accessors"].as_array_mut().unwrap() {
+        accessor.as_object_mut().unwrap().remove("bufferView");
+    }
+    assert!(refused(&file).text.contains("without Draco"), "{}", refused(&file));
+    // Meshopt with the uncompressed copy in the file, and without it.
+    let mut file = GltfFile::tetrahedron();
+    for view in file.json["bufferViews"].as_array_mut().unwrap() {
+        view["extensions"] =
+            json!({"EXT_meshopt_compression": {"buffer": 0, "byteLength": 4, "mode": "TRIANGLES"}});
+    }
+    assert!(read_tetrahedron(&file).is_empty());
+    for view in file.json["bufferViews"].as_array_mut().unwrap() {
+        view["buffer"] = json!(1);
+    }
+    file.json["buffers"] = json!([{"byteLength": file.bin.len()}, {"byteLength": file.bin.len()}]);
+    assert!(refused(&file).text.contains("without meshopt"), "{}", refused(&file));
+}
+
+#[test]
+fn uris_are_percent_decoded_and_each_file_is_read_once() {
+    let mut file = GltfFile::tetrahedron();
+    for (uri, name) in [
+        ("My%20Head.bin", "My Head.bin"),
+        ("./My%20Head.bin", "My Head.bin"),
+        ("parts/./K%C3%B6pfe.bin", "parts/Köpfe.bin"),
+        ("100%.bin", "100%.bin"),
+        ("not%20encoded.bin", "not%20encoded.bin"),
+    ] {
+        let length = file.bin.len();
+        file.json["buffers"] =
+            json!([{"uri": uri, "byteLength": length}, {"uri": format!("./{uri}"), "byteLength": 4}]);
+        let found = RefCell::new(0);
+        let (character, _) = gltf::parse(file.json.to_string().as_bytes(), &|asked| {
+            let is_found = asked == name;
+            *found.borrow_mut() += usize::from(is_found);
+            is_found.then(|| file.bin.clone())
+        })
+        .unwrap_or_else(|e| panic!("{uri}: {e}"));
+        assert_eq!((character.body.mesh.positions.len(), found.into_inner()), (4, 1), "{uri}");
+    }
+    for uri in ["/etc/passwd", "../secret.bin", "a/%2e%2e/secret.bin", "%2Fetc%2Fpasswd", "c:\\a.bin"] {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("secret.bin"), &file.bin).unwrap();
+        let path = folder.path().join("inner/head.gltf");
+        fs::create_dir(path.parent().unwrap()).unwrap();
+        file.json["buffers"] = json!([{"uri": uri, "byteLength": file.bin.len()}]);
+        fs::write(&path, file.json.to_string()).unwrap();
+        let error = read_body(&path, &ReadOptions::default()).unwrap_err().to_string();
+        assert!(error.contains("was not found next to it"), "{uri}: {error}");
+    }
+}
+
+#[test]
+fn quantized_meshes_are_read() {
+    let mut file = GltfFile::tetrahedron();
+    let corners: [[i16; 4]; 4] = [[0, 0, 0, 0], [100, 0, 0, 0], [0, 100, 0, 0], [0, 0, 100, 0]];
+    let bytes: Vec<u8> = corners.as_flattened().iter().flat_map(|x| x.to_le_bytes()).collect();
+    let positions = file.bytes(5122, "VEC3", 4, &bytes);
+    let view = file.json["accessors"][positions]["bufferView"].as_u64().unwrap() as usize;
+    file.json["bufferViews"][view]["byteStride"] = json!(8);
+    let normals = file.bytes(5120, "VEC3", 4, &[127, 0, 0, 0, 0, 127, 0, 0, 0, 0, 127, 0, 129, 0, 0, 0]);
+    let view = file.json["accessors"][normals]["bufferView"].as_u64().unwrap() as usize;
+    file.json["bufferViews"][view]["byteStride"] = json!(4);
+    file.json["accessors"][normals]["normalized"] = json!(true);
+    file.primitive()["attributes"] = json!({"POSITION": positions, "NORMAL": normals});
+    file.json["nodes"][0]["scale"] = json!([0.001, 0.001, 0.001]);
+    file.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    let mesh = read(&file).0.body.mesh;
+    for (p, want) in mesh.positions.iter().zip(TETRAHEDRON) {
+        assert!(p.distance(want.into()) < 1e-7, "{p}");
+    }
+    let normals = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_X];
+    assert!(hairspring_test::farthest(&mesh.normals, &normals) < 1e-6, "{:?}", mesh.normals);
+}
+
+/// Adds an animation that turns the node `Head` by 90° in half a second.
+fn animate(file: &mut GltfFile) {
+    let times = file.floats("SCALAR", &[0.0, 0.5]);
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let rotations = file.floats("VEC4", &[0.0, 0.0, 0.0, 1.0, 0.0, half, 0.0, half]);
+    let weights = file.floats("SCALAR", &[0.0, 1.0]);
+    let turn = json!({
+        "name": "turn",
+        "samplers": [{"input": times, "output": rotations}, {"input": times, "output": weights}],
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}]
+    });
+    file.push("animations", turn);
+}
+
+#[test]
+fn animation_channels_without_a_joint_are_left_out_and_noted_once() {
+    let mut file = GltfFile::tetrahedron();
+    animate(&mut file);
+    assert!(read_tetrahedron(&file).is_empty());
+    animate(&mut file);
+    let pointer = json!({"sampler": 1, "target": {"path": "pointer",
+        "extensions": {"KHR_animation_pointer": {"pointer": "/materials/0/alphaCutoff"}}}});
+    let nothing = json!({"sampler": 1, "target": {"path": "translation"}});
+    let future = json!({"sampler": 1, "target": {"node": 0, "path": "visibility"}});
+    let morph = json!({"sampler": 1, "target": {"node": 0, "path": "weights"}});
+    for animation in 0..2 {
+        let channels = file.json["animations"][animation]["channels"].as_array_mut().unwrap();
+        channels.extend([pointer.clone(), nothing.clone(), future.clone(), morph.clone()]);
+    }
+    file.json["extensionsRequired"] = json!(["KHR_animation_pointer"]);
+    let notes = read_tetrahedron(&file);
+    assert_noted_once(&notes, &["6 animation channels are left out", "animated morph targets are left out"]);
+    let clips = read(&file).0.clips;
+    assert_eq!((clips.len(), clips[0].frame_count()), (2, 31));
+    let last = clips[0].sample(0.5)[0].rotation;
+    assert!(last.abs_diff_eq(Quat::from_rotation_y(std::f32::consts::FRAC_PI_2), 1e-6), "{last}");
+}
+
+#[test]
+fn a_scene_without_nodes_gives_all_nodes() {
+    let mut file = GltfFile::tetrahedron();
+    file.json["scenes"] = json!([{"name": "empty"}]);
+    assert_noted_once(&read_tetrahedron(&file), &["lists no objects"]);
+    file.json["scenes"] = json!([]);
+    file.json.as_object_mut().unwrap().remove("scene");
+    assert!(read_tetrahedron(&file).is_empty());
+}
+
+#[test]
+fn strips_and_fans_are_triangles_and_lines_are_noted() {
+    let mut file = GltfFile::default();
+    // A square in a strip of two triangles, and in a fan.
+    let square = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0];
+    let positions = file.floats("VEC3", &square);
+    let fan = file.bytes(5121, "SCALAR", 4, &[0, 1, 3, 2]);
+    // Degenerate triangles join the two strips.
+    let strip = file.bytes(5121, "SCALAR", 9, &[0, 1, 2, 2, 1, 1, 1, 3, 2]);
+    let primitive = |mode: u32, indices: Option<usize>| {
+        let mut p = json!({"attributes": {"POSITION": positions}, "mode": mode});
+        if let Some(indices) = indices {
+            p["indices"] = json!(indices);
+        }
+        p
+    };
+    let primitives = json!([
+        primitive(5, None),
+        primitive(6, Some(fan)),
+        primitive(5, Some(strip)),
+        primitive(0, None),
+        primitive(3, None)
+    ]);
+    file.push("meshes", json!({"primitives": primitives}));
+    file.json["nodes"] = json!([{"mesh": 0}]);
+    file.json["scenes"][0]["nodes"] = json!([0]);
+    let (character, notes) = read(&file);
+    let mesh = character.body.mesh;
+    assert_eq!(mesh.positions.len(), 4, "primitives share their vertices");
+    assert_eq!(mesh.triangles[..4], [[0, 1, 2], [2, 1, 3], [0, 1, 3], [0, 3, 2]]);
+    assert_eq!(mesh.parts.len(), 3);
+    let upward = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        (b - a).cross(c - a).z
+    };
+    assert!(mesh.triangles.iter().all(|t| upward(t) == 1.0), "{:?}", mesh.triangles);
+    assert_noted_once(&notes, &["2 primitives of lines or points"]);
+}
+
+#[test]
+fn morph_targets_have_their_default_weights() {
+    let mut file = GltfFile::tetrahedron();
+    let grown: Vec<f32> = TETRAHEDRON.concat().iter().map(|x| 0.6 * x).collect();
+    let (grow, lost) = (file.floats("VEC3", &grown), 99);
+    file.primitive()["targets"] = json!([{"POSITION": grow}, {"POSITION": lost}]);
+    assert!(read_tetrahedron(&file).is_empty(), "without weights there is no change");
+    file.json["meshes"][0]["weights"] = json!([1.0, 0.0]);
+    assert!(read(&file).0.body.mesh.positions[1].distance(Vec3::X * 0.16) < 1e-7);
+    // A node has weights of its own.
+    file.json["nodes"][0]["weights"] = json!([0.5, 0.0]);
+    let (character, notes) = read(&file);
+    assert!(character.body.mesh.positions[1].distance(Vec3::X * 0.13) < 1e-7 && notes.is_empty());
+}
+
+#[test]
+fn sparse_accessors_are_read() {
+    let mut file = GltfFile::tetrahedron();
+    let indices = file.view(&[1, 0, 3, 0]);
+    let values = [0.1f32, 0.0, 0.0, 0.0, 0.0, 0.2];
+    let values = file.view(&values.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<_>>());
+    let sparse = json!({"count": 2, "indices": {"bufferView": indices, "componentType": 5123},
+        "values": {"bufferView": values}});
+    file.json["accessors"][0]["sparse"] = sparse;
+    assert_eq!(read(&file).0.body.mesh.positions[3], Vec3::Z * 0.2);
+    file.json["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+    let positions = read(&file).0.body.mesh.positions;
+    assert_eq!(positions, [Vec3::ZERO, Vec3::X * 0.1, Vec3::ZERO, Vec3::Z * 0.2]);
+    file.json["accessors"][0]["count"] = json!(2);
+    assert!(refused(&file).text.contains("sparse index"), "{}", refused(&file));
+}
+
+/// Adds a skin of the nodes `joints` with these inverse bind matrices.
+fn skin(file: &mut GltfFile, joints: &[usize], binds: &[Affine3A]) -> usize {
+    let matrices: Vec<f32> = binds.iter().flat_map(|b| glam::Mat4::from(*b).to_cols_array()).collect();
+    let matrices = file.floats("MAT4", &matrices);
+    file.push("skins", json!({"joints": joints, "inverseBindMatrices": matrices}))
+}
+
+/// Adds accessors of joints and weights of four vertices.
+fn weights(file: &mut GltfFile, joints: [[u8; 4]; 4], weights: [[f32; 4]; 4]) -> (usize, usize) {
+    (file.bytes(5121, "VEC4", 4, joints.as_flattened()), file.floats("VEC4", weights.as_flattened()))
+}
+
+#[test]
+fn unused_joint_slots_may_hold_any_number() {
+    let mut file = GltfFile::tetrahedron();
+    skin(&mut file, &[0], &[Affine3A::IDENTITY]);
+    file.json["nodes"][0]["skin"] = json!(0);
+    let one = [1.0, 0.0, 0.0, 0.0];
+    let (j, w) = weights(&mut file, [[0, 255, 255, 255]; 4], [one, one, one, [0.0; 4]]);
+    file.primitive()["attributes"]["JOINTS_0"] = json!(j);
+    file.primitive()["attributes"]["WEIGHTS_0"] = json!(w);
+    assert_noted_once(&read_tetrahedron(&file), &["1 vertices of skinned meshes have no weight"]);
+    assert_eq!(read(&file).0.body.skin.unwrap().weights, [one; 4]);
+    let (j, _) = weights(&mut file, [[255, 0, 0, 0]; 4], [one; 4]);
+    file.primitive()["attributes"]["JOINTS_0"] = json!(j);
+    assert!(refused(&file).text.contains("joint 255 of a skin of 1"), "{}", refused(&file));
+}
+
+#[test]
+fn a_primitive_without_joints_in_a_skinned_mesh_moves_with_its_node() {
+    let mut file = GltfFile::tetrahedron();
+    file.json["nodes"] = json!([{"name": "Hips", "children": [1]},
+        {"name": "Body", "translation": [0, 1, 0], "mesh": 0, "skin": 0}]);
+    skin(&mut file, &[0], &[Affine3A::IDENTITY]);
+    let (character, notes) = read(&file);
+    assert_noted_once(&notes, &["1 primitives of a skinned mesh have no joints"]);
+    let body = character.body;
+    let node = body.joint("Body").unwrap();
+    assert!(body.skin.as_ref().unwrap().joints.iter().all(|j| usize::from(j[0]) == node));
+    assert_eq!(body.mesh.positions[1], Vec3::new(0.1, 1.0, 0.0));
+}
+
+/// A body and a face with skins of their own, in which the joints Spine and Head have been bound in different poses,
+/// by the transforms `posed` on top of the rest pose of the first.
+fn two_skins(posed: [Affine3A; 2]) -> GltfFile {
+    let mut file = GltfFile::tetrahedron();
+    let turn = Quat::from_rotation_z(0.7);
+    file.json["nodes"] = json!([
+        {"name": "Hips", "translation": [0, 1, 0], "children": [1]},
+        {"name": "Spine", "translation": [0, 0.3, 0], "rotation": turn.to_array(), "children": [2]},
+        {"name": "Head", "translation": [0, 0.25, 0], "rotation": turn.to_array()},
+        {"name": "Body", "mesh": 0, "skin": 0}, {"name": "Face", "mesh": 1, "skin": 1}
+    ]);
+    file.json["scenes"][0]["nodes"] = json!([0, 3, 4]);
+    let rest = [1.0, 1.3, 1.55].map(|y| Affine3A::from_translation(Vec3::Y * y));
+    skin(&mut file, &[0, 1, 2], &rest.map(|r| r.inverse()));
+    let [spine, head] = posed;
+    skin(&mut file, &[1, 2], &[(spine * rest[1]).inverse(), (head * rest[2]).inverse()]);
+    let one = [1.0, 0.0, 0.0, 0.0];
+    let at = |p: Vec3| TETRAHEDRON.map(|t| p + Vec3::from(t));
+    let body = at(Vec3::Y * 1.6);
+    let face = body.map(|p| head.transform_point3(p));
+    for (corners, joint) in [(body, 2), (face, 1)] {
+        let positions = file.floats("VEC3", corners.map(|p| p.to_array()).as_flattened());
+        let (j, w) = weights(&mut file, [[joint, 0, 0, 0]; 4], [one; 4]);
+        let primitive =
+            json!({"attributes": {"POSITION": positions, "JOINTS_0": j, "WEIGHTS_0": w}, "indices": 1});
+        file.push("meshes", json!({"primitives": [primitive]}));
+    }
+    file.json["nodes"][3]["mesh"] = json!(1);
+    file.json["nodes"][4]["mesh"] = json!(2);
+    animate(&mut file);
+    file
+}
+
+#[test]
+fn meshes_of_several_skins_stay_together() {
+    let none = Affine3A::IDENTITY;
+    let bent = Affine3A::from_rotation_translation(Quat::from_rotation_x(0.5), Vec3::new(0.1, -0.2, 0.3));
+    let turned = Affine3A::from_rotation_translation(Quat::from_rotation_z(-0.8), Vec3::new(0.4, 0.1, 0.0));
+    for (posed, notes_wanted) in
+        [([none, none], 0), ([bent, bent], 0), ([bent, turned], 1), ([none, turned], 1)]
+    {
+        let (character, notes) = read(&two_skins(posed));
+        assert_eq!(notes.len(), notes_wanted, "{notes:?}");
+        let body = &character.body;
+        let apart =
+            |positions: &[Vec3]| (0..4).map(|v| positions[v].distance(positions[v + 4])).fold(0.0, f32::max);
+        assert!(apart(&body.mesh.positions) < 1e-5, "at rest: {}", apart(&body.mesh.positions));
+        assert!(
+            body.mesh.positions[0].distance(Vec3::Y * 1.6) < 1e-5,
+            "the rest pose is that of the first skin"
+        );
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        for time in [0.0, 0.2, 0.5] {
+            body.skinned(&body.world(&character.clips[0].sample(time)), &mut positions, &mut normals);
+            assert!(apart(&positions) < 1e-5, "at {time} s: {}", apart(&positions));
+        }
+    }
+}
+
+#[test]
+fn a_skin_below_the_joints_of_another_is_placed_at_them() {
+    // The face has a skin of the head alone, and that of the body does not bind the head.
+    let mut file = two_skins([Affine3A::IDENTITY; 2]);
+    let rest = [1.0, 1.3, 1.55].map(|y| Affine3A::from_translation(Vec3::Y * y).inverse());
+    file.json["skins"] = json!([]);
+    skin(&mut file, &[2], &rest[2..]);
+    skin(&mut file, &[0, 1, 1], &[rest[0], rest[1], rest[1]]);
+    file.json["nodes"][3]["skin"] = json!(1);
+    file.json["nodes"][4]["skin"] = json!(0);
+    let joints = file.bytes(5121, "VEC4", 4, &[0; 16]);
+    file.json["meshes"][2]["primitives"][0]["attributes"]["JOINTS_0"] = json!(joints);
+    let (character, notes) = read(&file);
+    let body = &character.body;
+    let spine = body.joint("Spine").unwrap();
+    // The head keeps its own rotation below a spine that stands upright in the rest pose of the body.
+    let head = body.world(&body.rest_pose())[spine + 1].translation;
+    assert!(Vec3::from(head).distance(Vec3::Y * 1.55) < 1e-5, "{head} {notes:?}");
+    let (mut positions, mut normals) = (Vec::new(), Vec::new());
+    body.skinned(&body.world(&body.rest_pose()), &mut positions, &mut normals);
+    assert!(hairspring_test::farthest(&positions, &body.mesh.positions) < 1e-5);
+}
+
+#[test]
+fn a_vrm_is_a_gltf() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("Avatar.VRM");
+    let mut file = GltfFile::tetrahedron();
+    file.json["extensions"] = json!({"VRM": {"specVersion": "0.0", "humanoid": {"humanBones": []}}});
+    file.json["extensionsUsed"] = json!(["VRM", "KHR_materials_unlit"]);
+    fs::write(&path, file.glb()).unwrap();
+    assert_eq!(read_body(&path, &ReadOptions::default()).unwrap().value.body.mesh.triangles.len(), 4);
+}
+
+#[test]
+fn a_motion_needs_no_mesh_but_a_body_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("walk.glb");
+    let mut file = GltfFile::tetrahedron();
+    animate(&mut file);
+    file.json["meshes"] = json!([]);
+    file.json["nodes"] = json!([{"name": "Head"}]);
+    fs::write(&path, file.glb()).unwrap();
+    let motion = read_motion(&path, None, &ReadOptions::default()).unwrap().value;
+    assert_eq!((motion.joints.len(), motion.clip.frame_count()), (1, 31));
+    let error = read_body(&path, &ReadOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("no triangles"), "{error}");
+}
+
+#[test]
+fn other_versions_are_refused_by_their_number() {
+    let old = br#"{"asset":{"version":"1.0"},"scenes":{"main":{"nodes":["a"]}},"nodes":{"a":{}}}"#;
+    let problem = gltf::parse(old, &|_| None).unwrap_err();
+    assert!(problem.text.contains("version \"1.0\" is not supported"), "{problem}");
+}

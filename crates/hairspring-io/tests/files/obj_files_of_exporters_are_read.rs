@@ -1,0 +1,177 @@
+//! Promise: an OBJ file is read as exporters write it, in any encoding with a byte order mark and with any line end.
+//! Polygons that are not convex get triangles inside them, and polylines are strands. A file without faces is no body.
+
+use glam::Vec3;
+use hairspring::body::Mesh;
+use hairspring_io::{ErrorKind, ReadOptions, obj, read_body, read_groom};
+use std::fs;
+
+const SQUARE: &str =
+    "# a square\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.25\nvt 0.5 0.75\ng side # 1\nf 1/1 2/2 3/2 4/1\n";
+
+fn parse(text: &str) -> Mesh {
+    obj::parse(text.as_bytes()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn assert_square(mesh: &Mesh) {
+    let square = parse(SQUARE);
+    assert_eq!((mesh.positions.len(), &mesh.triangles), (4, &vec![[0, 1, 2], [0, 2, 3]]));
+    assert_eq!((&mesh.positions, &mesh.uvs), (&square.positions, &square.uvs));
+}
+
+#[test]
+fn every_encoding_with_a_mark_and_every_line_end_is_read() {
+    assert_eq!(parse(SQUARE).uvs[0], glam::Vec2::new(0.25, 0.0));
+    for end in ["\n", "\r\n", "\r"] {
+        let text = SQUARE.replace('\n', end);
+        assert_square(&parse(&text));
+        assert_square(&parse(&format!("\u{feff}{text}")));
+        let utf16 = |order: fn(u16) -> [u8; 2]| {
+            format!("\u{feff}{text}").encode_utf16().flat_map(order).collect::<Vec<u8>>()
+        };
+        assert_square(&obj::parse(&utf16(u16::to_le_bytes)).unwrap());
+        assert_square(&obj::parse(&utf16(u16::to_be_bytes)).unwrap());
+        // Errors name the line.
+        let error = obj::parse(text.replace("0.5", "half").as_bytes()).unwrap_err().to_string();
+        assert!(
+            error.starts_with("line 7: expected a texture coordinate of 1 number, found `half`"),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn continued_lines_and_comments_are_read() {
+    let text = "# C:\\models\\\nmtllib C:\\models\\\nv 0 0 0\nv 1 \\\n 0 0 # one\nv 1 1 \\ \n\\\n0\nv 0 1 0\nvt 0.25\nvt 0.5 0.75 0\n\
+                f 1/1 2/2 \\\n 3/2 4/1 # a face\n";
+    assert_square(&parse(text));
+    assert_square(&parse(&text.replace('\n', "\r\n")));
+    // A backslash at the end of the file.
+    let mut mesh = parse(&format!("{SQUARE}v 1 2 3 \\"));
+    assert_eq!(
+        (mesh.positions.pop(), mesh.uvs.pop()),
+        (Some(Vec3::new(1.0, 2.0, 3.0)), Some(glam::Vec2::ZERO))
+    );
+    assert_square(&mesh);
+}
+
+/// The triangles of a polygon in the plane z = 0, which must have its area and keep its direction.
+fn assert_triangulated(corners: &[(f32, f32)]) {
+    let mut text: String = corners.iter().map(|(x, y)| format!("v {x} {y} 0\n")).collect();
+    text += "f";
+    (1..=corners.len()).for_each(|i| text += &format!(" {i}"));
+    let mesh = parse(&text);
+    assert_eq!(mesh.triangles.len(), corners.len() - 2);
+    let area = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| mesh.positions[i as usize]);
+        0.5 * (b - a).cross(c - a).z
+    };
+    let around = corners.iter().zip(corners.iter().cycle().skip(1));
+    let want: f32 = 0.5 * around.map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f32>();
+    let (sum, size) = mesh
+        .triangles
+        .iter()
+        .map(area)
+        .fold((0.0, 0.0), |(sum, size): (f32, f32), a| (sum + a, size + a.abs()));
+    // Triangles outside the polygon would overlap others or have the opposite direction.
+    assert!((sum - want).abs() < 1e-4 * want.abs(), "{sum} is not {want}");
+    assert!((size - want.abs()).abs() < 1e-4 * want.abs(), "{corners:?}: triangles overlap");
+}
+
+#[test]
+fn polygons_that_are_not_convex_are_triangulated_inside() {
+    let arrow = [(0.0, 0.0), (1.0, -1.0), (0.2, 0.0), (1.0, 1.0)];
+    let l = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)];
+    let comb: Vec<(f32, f32)> = (0..40)
+        .map(|i| (i as f32, if i % 2 == 0 { 1.0 } else { 9.0 }))
+        .chain([(39.0, 0.0), (0.0, 0.0)])
+        .collect();
+    let star: Vec<(f32, f32)> = (0..30)
+        .map(|i| (i as f32 * std::f32::consts::TAU / 30.0).sin_cos())
+        .enumerate()
+        .map(|(i, (sin, cos))| if i % 2 == 0 { (cos, sin) } else { (0.3 * cos, 0.3 * sin) })
+        .collect();
+    for polygon in [&arrow[..], &l, &comb, &star] {
+        for first in 0..polygon.len() {
+            let mut turned = polygon.to_vec();
+            turned.rotate_left(first);
+            assert_triangulated(&turned);
+            turned.reverse();
+            assert_triangulated(&turned);
+        }
+    }
+    // The normal of a quad that is not convex is that of its surface.
+    let mesh = parse("v 0 0 0\nv 1 -1 0\nv 0.2 0 0\nv 1 1 0\nf 2 3 4 1\n");
+    assert!(mesh.normals.iter().all(|n| *n == Vec3::NEG_Z || *n == Vec3::Z));
+}
+
+#[test]
+fn a_polygon_of_many_corners_takes_linear_time_and_is_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("comb.obj");
+    let corners = 200_000;
+    let mut text: String = (0..corners)
+        .map(|i| format!("v {} {} 0\n", 1e-5 * i as f32, if i % 2 == 0 { 0.1 } else { 0.9 }))
+        .collect();
+    text += &format!(
+        "v 2 0 0\nv 0 0 0\nf {}\n",
+        (1..=corners + 2).map(|i| i.to_string()).collect::<Vec<_>>().join(" ")
+    );
+    fs::write(&path, text).unwrap();
+    let loaded = read_body(&path, &ReadOptions::default()).unwrap();
+    assert!(
+        loaded.notes.iter().any(|n| n.contains("1 polygons of many corners are not convex")),
+        "{:?}",
+        loaded.notes
+    );
+}
+
+#[test]
+fn polylines_are_strands() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curves.obj");
+    let strands = "v 0 0 0\nv 0 0.1 0\nv 0 0.2 0\nv 0.1 0 0\nv 0.1 0.1 0\nvt 0.5 0.25\n";
+    let options = ReadOptions { scale: Some(1.0), up: None };
+    // Whole strands, and each segment as a line of its own.
+    for lines in
+        ["g hair\nl 1/1 2/1 3/1\nl 4 5\nl 1\n", "l 1/1 2\nl 2 3 # tip\nl 4 5\n", "l -5/1 \\\n-4 -3\rl 4 5"]
+    {
+        fs::write(&path, format!("{strands}{lines}")).unwrap();
+        let groom = obj::parse_groom(&fs::read(&path).unwrap()).unwrap();
+        assert_eq!(groom.offsets, [0, 3, 5], "{lines}");
+        assert_eq!(read_groom(&path, &options).unwrap().value.strand_count(), 2);
+        assert_eq!(groom.points[..3], [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2]);
+        assert_eq!(groom.root_uvs[0], glam::Vec2::new(0.5, 0.25));
+        let error = read_body(&path, &options).unwrap_err().to_string();
+        assert!(error.contains("polylines but no faces"), "{error}");
+    }
+    fs::write(&path, format!("{strands}l 1 2 3\nf 1 2 4\n")).unwrap();
+    assert!(read_groom(&path, &options).unwrap().notes.iter().any(|n| n.contains("1 faces are left out")));
+    assert!(
+        read_body(&path, &options).unwrap().notes.iter().any(|n| n.contains("1 polylines are no surface"))
+    );
+    fs::write(&path, SQUARE).unwrap();
+    assert!(read_groom(&path, &options).unwrap_err().to_string().contains("no polylines"));
+    fs::write(&path, format!("{strands}l 1 9\n")).unwrap();
+    assert!(
+        read_groom(&path, &options)
+            .unwrap_err()
+            .to_string()
+            .contains("line 7: the face or line names vertex 9")
+    );
+}
+
+#[test]
+fn a_file_without_faces_is_no_body() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("nothing.obj");
+    let gzip = [&[0x1f, 0x8b, 8, 0][..], &[0x55; 5000]].concat();
+    for content in
+        [&b""[..], &gzip, "A".repeat(5_000_000).as_bytes(), b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", b"f\nf 1\n"]
+    {
+        fs::write(&path, content).unwrap();
+        let error = read_body(&path, &ReadOptions::default()).unwrap_err();
+        assert_eq!(error.kind(), ErrorKind::Malformed);
+        assert!(error.to_string().contains("no face") || error.to_string().contains("line 2"), "{error}");
+    }
+}
