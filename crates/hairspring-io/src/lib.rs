@@ -12,8 +12,10 @@ mod load;
 mod motion;
 mod save;
 mod skin;
+mod skin_distance;
 mod strands;
 mod text;
+mod tfx_text;
 mod units;
 
 pub mod bvh;
@@ -33,5 +35,6 @@ pub use load::{Format, Loaded, read_body, read_bones, read_groom, read_motion};
 pub use motion::Motion;
 pub use save::{atomically, write_groom, write_strands};
 pub use scene::{read_scene, read_scene_text, read_settings, same_geometry};
+pub use skin_distance::SkinDistance;
 pub use strands::Strands;
 pub use units::{Axis, ReadOptions};

@@ -16,6 +16,7 @@ pub struct Ground {
     pub height: Option<f32>,
     /// Linear RGB color, 0 to 1, of a floor lit by the key light and the sky. `None`, the default: the floor
     /// matches the backdrop and is only visible by its shadow.
+    #[serde(deserialize_with = "crate::deserialize_optional_color")]
     pub color: Option<Vec3>,
 }
 

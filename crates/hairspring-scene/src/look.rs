@@ -1,5 +1,6 @@
 //! Hair color and shading settings. Rendering is implemented in `hairspring-view`.
 
+use crate::deserialize_color;
 use glam::Vec3;
 use hairspring::settings::{Check, Validate, check};
 use serde::{Deserialize, Serialize};
@@ -16,8 +17,10 @@ use serde::{Deserialize, Serialize};
 #[serde(default, deny_unknown_fields)]
 pub struct HairLook {
     /// Linear RGB at the root, 0 to 1. Default: dark brown.
+    #[serde(deserialize_with = "deserialize_color")]
     pub root_color: Vec3,
     /// Linear RGB at the tip, 0 to 1. Default: a lighter brown, as from sun and washing.
+    #[serde(deserialize_with = "deserialize_color")]
     pub tip_color: Vec3,
     /// Pigment in the fiber, 0 (none: white) to 1 (black), perceptually even: the amount is −ln(1 − melanin),
     /// as in the hair shaders of Blender and Unreal. `None`, the default: the colors are used.
@@ -27,6 +30,7 @@ pub struct HairLook {
     pub melanin_redness: f32,
     /// Dye: linear RGB that white hair would take on, 0 to 1, applied to the melanin or the colors. Default
     /// white: no dye.
+    #[serde(deserialize_with = "deserialize_color")]
     pub dye: Vec3,
     /// Variation of pigment from strand to strand, 0 (none) to 1. Default 0.25: visible only as depth.
     pub variation: f32,

@@ -53,9 +53,9 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         first_failure(text, line_at(text, sheet.file.span().start), &[thick])?;
     }
     if let Some(builtin) = &scene.builtin {
-        let strands = builtin.strands.as_ref().is_none_or(|n| (1..=10_000_000).contains(n.get_ref()));
+        let strands = builtin.strands.as_ref().is_none_or(|n| *n.get_ref() <= 10_000_000);
         let checks = [
-            (strands, "strands", "1 to 10000000"),
+            (strands, "strands", "0 to 10000000"),
             (builtin.guides != Some(Guides::FromGroom), "guides", "a number above 0 or \"all\""),
         ];
         first_failure(text, section("[builtin]"), &checks)?;
@@ -74,6 +74,8 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             ordered,
             of_numbers,
             (above_0(clip.scale), "scale", "above 0 [m per unit]"),
+            (clip.rate.is_none_or(|r| (0.01..=1e6).contains(&r)), "rate", "0.01 to 1000000 [Hz]"),
+            (clip.rate.is_none() || clip.file.is_some(), "rate", "given with a `file`"),
             (clip.pivot.is_none_or(finite), "pivot", "three finite numbers [m]"),
             (clip.facing.is_none_or(f32::is_finite), "facing", "a finite number [degrees]"),
             (

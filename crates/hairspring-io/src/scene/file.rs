@@ -8,7 +8,7 @@ use hairspring::{
     groom::{Growth, Thicken},
     settings::{Effects, Neighbours, Solver, Volume, Wind},
 };
-use hairspring_scene::{Camera, Collider, Ground, Guides, HairLook, Hand, Shape};
+use hairspring_scene::{Camera, Collider, Ground, Guides, HairLook, Hand, Shape, deserialize_optional_color};
 use serde::{Deserialize, Deserializer, de};
 use std::{collections::BTreeMap, path::PathBuf};
 use toml::Spanned;
@@ -90,7 +90,7 @@ pub(super) struct SceneFile {
 pub(super) struct BuiltinFile {
     /// The hairstyle, a preset's name. Default wavy.
     pub style: Option<Spanned<String>>,
-    /// Hairs on the scalp. Default 100,000.
+    /// Hairs on the scalp; 0 for a bald head. Default 100,000.
     pub strands: Option<Spanned<u32>>,
     /// A number of guides, or "all". Default 2,000.
     #[serde(default, deserialize_with = "guides_or_default")]
@@ -123,6 +123,7 @@ pub(super) struct BodyFile {
     /// MakeHuman skin weights (JSON) of an `.obj`; needs `rig`.
     pub weights: Option<FileName>,
     /// Linear RGB color of the whole surface, 0 to 1. Default: the file's.
+    #[serde(default, deserialize_with = "deserialize_optional_color")]
     pub color: Option<Vec3>,
     /// Roughness of the whole surface, 0 (glossy) to 1 (matte). Default: the file's.
     pub roughness: Option<f32>,
@@ -149,6 +150,8 @@ pub(super) struct ClipFile {
     pub scale: Option<f32>,
     /// The axis that points up, "y" or "z". Default: by the format, or guessed with a note.
     pub up: Option<Axis>,
+    /// Frames per second of a `.bvh` file [Hz]. Default: by the file's frame time.
+    pub rate: Option<f64>,
     /// First frame that is used, counted from 0. Default 0.
     #[serde(default)]
     pub start: usize,
@@ -238,6 +241,12 @@ pub(super) struct GroomFile {
     pub scale: Option<f32>,
     /// The axis that points up, "y" or "z". Default: z for `.hair`, y otherwise.
     pub up: Option<Axis>,
+    /// Whether the last point of each strand is its root. Default false.
+    #[serde(default)]
+    pub reverse: bool,
+    /// Source of the color of a file with a color per point: "file" or "look". Default "file".
+    #[serde(default)]
+    pub colors: ColorSource,
     /// Placement of the hairstyle, applied after `scale` and `up`.
     #[serde(default)]
     pub transform: Placement,
@@ -257,6 +266,15 @@ pub(super) struct GroomFile {
     pub bones: Option<FileName>,
 }
 
+/// Where the color of hair comes from if the groom's file has a color per point.
+#[derive(Clone, Copy, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum ColorSource {
+    #[default]
+    File,
+    Look,
+}
+
 /// The inputs that determine a groom's strands.
 #[derive(PartialEq)]
 pub(super) struct GroomGeometry<'a> {
@@ -264,6 +282,8 @@ pub(super) struct GroomGeometry<'a> {
     grow: Option<Grown<'a>>,
     thicken: Thicken,
     units: (Option<f32>, Option<Axis>),
+    reverse: bool,
+    colors: ColorSource,
     transform: Placement,
     guides: Guides,
 }
@@ -276,6 +296,8 @@ impl GroomFile {
             grow: self.grow.as_ref().map(|grow| grow.get_ref().geometry()),
             thicken: self.thicken,
             units: (self.scale, self.up),
+            reverse: self.reverse,
+            colors: self.colors,
             transform: self.transform,
             guides: self.guides,
         }

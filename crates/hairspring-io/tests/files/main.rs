@@ -5,7 +5,9 @@ mod samples;
 
 mod bad_files_are_refused;
 mod example_meshes_are_made_by_code;
+mod grooms_fit_the_body;
 mod grooms_round_trip;
 mod headless_bake_runs;
+mod motions_fit_the_body;
 mod real_files_are_read;
 mod real_grooms_stay_on_real_heads;
