@@ -157,14 +157,14 @@ fn by_size(extent: f32, length: f32) -> f32 {
     if HAIR.contains(&extent) {
         return 1.0;
     }
-    // A head of hair of shoulder length; or short strands (brows, beard, fur) on anything from a brow to a
-    // large animal. Distances are in powers of e.
+    // A head of hair of shoulder length; or strands (brows, beard, fur) that are short compared with what they
+    // grow on, from a brow to a large animal. Distances are in powers of e. Few tools use decimeters.
     let off = |scale: f32| {
         let (extent, length) = (extent * scale, length.max(f32::MIN_POSITIVE) * scale);
-        let beyond = |low: f32, high: f32| (low / extent).max(extent / high).ln().max(0.0);
+        let beyond = |value: f32, low: f32, high: f32| (low / value).max(value / high).ln().max(0.0);
         let head = (extent / 0.35).ln().abs() + (length / 0.25).ln().abs();
-        let short = (length / 0.01).ln().abs() + beyond(0.05, 2.0);
-        head.min(short)
+        let short = (length / 0.01).ln().abs() + beyond(extent, 0.05, 2.0) + beyond(length / extent, 0.0, 0.1);
+        head.min(short) + if scale == 0.1 { 0.5 } else { 0.0 }
     };
     nearest(off)
 }
