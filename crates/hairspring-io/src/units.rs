@@ -163,7 +163,8 @@ fn by_size(extent: f32, length: f32) -> f32 {
         let (extent, length) = (extent * scale, length.max(f32::MIN_POSITIVE) * scale);
         let beyond = |value: f32, low: f32, high: f32| (low / value).max(value / high).ln().max(0.0);
         let head = (extent / 0.35).ln().abs() + (length / 0.25).ln().abs();
-        let short = (length / 0.01).ln().abs() + beyond(extent, 0.05, 2.0) + beyond(length / extent, 0.0, 0.1);
+        let short =
+            (length / 0.01).ln().abs() + beyond(extent, 0.05, 2.0) + beyond(length / extent, 0.0, 0.1);
         head.min(short) + if scale == 0.1 { 0.5 } else { 0.0 }
     };
     nearest(off)

@@ -74,6 +74,9 @@ fn reworded(message: &str, key: Option<&str>) -> String {
         return format!("{name} is missing");
     }
     let field = key.map_or("the value".into(), |key| format!("`{key}`"));
+    if message == "wanted string or table" {
+        return format!("{field} needs a name in quotes");
+    }
     if let Some(expected) = message.strip_prefix("expected ").filter(|_| key.is_some()) {
         return format!("{field} needs {expected}");
     }
@@ -98,7 +101,7 @@ fn needed(expected: &str) -> String {
         "a string" | "string" | "path string" | "a borrowed string" => "text in quotes",
         "a sequence" => "a list, such as [1.0, 2.0]",
         "a map" => "a table, such as { name = 1.0 }",
-        "variant identifier" | "string or table" | "a string or table" => "a name in quotes",
+        "variant identifier" => "a name in quotes",
         "a sequence of 2 f32 values" => "two numbers, such as [1.5, 0.0]",
         "a sequence of 3 f32 values" => "three numbers, such as [1.5, 0.0, 0.0]",
         "a sequence of 4 f32 values" => "four numbers, such as [1.5, 0.0, 0.0, 0.0]",
