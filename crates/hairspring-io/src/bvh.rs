@@ -79,7 +79,7 @@ fn read(data: &[u8], rate: Option<f64>) -> Result<Read, Problem> {
         return Err(Problem::line(line, "the file holds no frames; export the motion again"));
     }
     if named == 0 {
-        notes.push(format!("the header names 0 frames; {frames} were counted in the file and are used"));
+        notes.push(format!("the header names 0 frames; {frames} were counted in the file and are used; correct `Frames:` in the file"));
     }
     // A number and a space take at least two bytes. A file without channels has one still frame.
     if frames.saturating_mul(width.max(1)) > text.len() / 2 + 1 {
