@@ -42,8 +42,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         return Err(Fault::Usage(text));
     }
     output::try_folder(to)?;
-    let loaded = read_groom(from, &(*units).into()).map_err(|e| Fault::reading(e, from))?;
+    let mut loaded = read_groom(from, &(*units).into()).map_err(|e| Fault::reading(e, from))?;
     tell(&loaded.notes, &loaded.repairs, console);
+    if units.reverse {
+        loaded.value.reverse();
+    }
     let lost = write_groom(to, &loaded.value).map_err(Fault::writing)?;
     lost.iter().for_each(|l| console.note(l));
     say(format_args!(

@@ -34,7 +34,7 @@ pub struct Options {
     style: String,
 
     /// Number of hairs on the head
-    #[arg(long, value_name = "N", default_value_t = BuiltinOptions::default().strands, value_parser = clap::value_parser!(u32).range(1..=2_000_000))]
+    #[arg(long, value_name = "N", default_value_t = BuiltinOptions::default().strands, value_parser = clap::value_parser!(u32).range(0..=2_000_000))]
     strands: u32,
 
     /// Points per hair, 3 to 256 [default: depends on the style; 32 for wavy hair]

@@ -7,12 +7,14 @@ use crate::{
     totals::grouped,
 };
 use clap::Parser;
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use hairspring::{
-    body::{Body, Clip},
+    body::{Body, Clip, Mesh, Part},
     groom::{Groom, Repairs},
 };
-use hairspring_io::{Format, ReadOptions, read_body, read_bones, read_groom, read_motion, read_scene};
+use hairspring_io::{
+    Format, Motion, ReadOptions, SkinDistance, read_body, read_bones, read_groom, read_motion, read_scene,
+};
 use hairspring_scene::{Guides, Scene};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -22,6 +24,11 @@ use std::path::{Path, PathBuf};
 /// For a groom, `repaired` counts what was fixed while reading: points that were not finite, segments of zero
 /// length, strands of fewer than three points, and radii that were not above 0. `length_m` is the length of
 /// the shortest, the median and the longest strand.
+///
+/// `joint_positions_m` are the joints of a body at rest, or of a motion in its first frame, and
+/// `part_bounds_m` two corners of the box around each part, in the order of `joints` and `parts`. For the
+/// grooms of a scene with a body, `root_distance_m` is the median and the largest distance of a root from the
+/// skin.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
@@ -52,10 +59,16 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             path.display()
         ))
     })?;
+    if options.units.reverse && !Format::GROOMS.contains(&format) {
+        return Err(Fault::Usage("--reverse applies to a groom file (.hair, .tfx, .data)".into()));
+    }
     let mut found = match format {
         Format::Hair | Format::Tfx | Format::Usc => {
-            let loaded = read_groom(path, &units).map_err(wrong)?;
+            let mut loaded = read_groom(path, &units).map_err(wrong)?;
             tell(&loaded.notes, &loaded.repairs, console);
+            if options.units.reverse {
+                loaded.value.reverse();
+            }
             groom(&loaded.value, &loaded.repairs)
         }
         Format::Gltf | Format::Obj | Format::TfxMesh => {
@@ -68,9 +81,12 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         Format::Bvh => {
             let loaded = read_motion(path, None, &units).map_err(wrong)?;
             tell(&loaded.notes, &loaded.repairs, console);
-            let names: Vec<&str> = loaded.value.joints.iter().map(|j| j.name.as_str()).collect();
-            let mut found = clip(&loaded.value.clip);
-            found["joints"] = json!(names);
+            let Motion { joints, clip: motion } = loaded.value;
+            let mut found = clip(&motion);
+            let skeleton = Body { joints, ..Body::default() };
+            let first = motion.samples.get(..motion.joint_count).unwrap_or_default();
+            found["joints"] = names(&skeleton);
+            found["joint_positions_m"] = positions(&skeleton.world(first));
             found
         }
         Format::TfxBone => {
@@ -121,8 +137,27 @@ fn guides(groom: &Groom) -> usize {
     used.len()
 }
 
+fn names(body: &Body) -> Value {
+    body.joints.iter().map(|j| j.name.as_str()).collect()
+}
+
+/// Positions of joints with these transforms [m].
+fn positions(world: &[Affine3A]) -> Value {
+    world.iter().map(|w| json!(w.translation.to_array())).collect()
+}
+
+/// Boxes around the parts of a mesh [m].
+fn part_bounds(mesh: &Mesh) -> Value {
+    let of_part = |part: &Part| {
+        let triangles = &mesh.triangles[part.triangles.start as usize..part.triangles.end as usize];
+        let mut corners = triangles.iter().flatten().map(|v| mesh.positions[*v as usize]);
+        let first = corners.next()?;
+        Some(corners.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
+    };
+    mesh.parts.iter().map(|part| bounds(of_part(part))).collect()
+}
+
 fn body(body: &Body) -> Value {
-    let joints: Vec<&str> = body.joints.iter().map(|j| j.name.as_str()).collect();
     let parts: Vec<&str> = body.mesh.parts.iter().map(|p| p.name.as_str()).collect();
     json!({
         "vertices": body.mesh.positions.len(),
@@ -130,7 +165,9 @@ fn body(body: &Body) -> Value {
         "bounds_m": bounds(body.mesh.bounds()),
         "skinned": body.skin.is_some(),
         "parts": parts,
-        "joints": joints,
+        "part_bounds_m": part_bounds(&body.mesh),
+        "joints": names(body),
+        "joint_positions_m": positions(&body.world(&body.rest_pose())),
     })
 }
 
@@ -152,6 +189,10 @@ fn scene(scene: &Scene, repairs: &Repairs) -> Value {
             if let Value::Object(found) = &mut found {
                 // Repairs are counted for all grooms together.
                 found.remove("repaired");
+            }
+            if let Some(body) = &scene.body {
+                let distance = SkinDistance::of(&g.groom, &body.mesh);
+                found["root_distance_m"] = json!(distance.map(|d| [d.median, d.max]));
             }
             found["simulated"] = match g.guides {
                 Guides::All => json!("all"),
@@ -187,6 +228,27 @@ fn lines(path: &Path, all: &Value) {
 fn show(value: &Value, depth: usize) {
     let Value::Object(fields) = value else { return };
     for (name, value) in fields {
+        // Lists with one entry for each joint or part are printed with the names, one a line.
+        let named = match name.as_str() {
+            "joint_positions_m" => fields.get("joints"),
+            "part_bounds_m" => fields.get("parts"),
+            _ => None,
+        };
+        if let (Some(Value::Array(names)), Value::Array(items)) = (named, value) {
+            if !names.is_empty() {
+                say(format_args!("{:indent$}{}", "", name.replace('_', " "), indent = 2 * depth));
+            }
+            for (name, item) in names.iter().zip(items) {
+                say(format_args!(
+                    "{:indent$}{:<24} {}",
+                    "",
+                    plain(name),
+                    plain(item),
+                    indent = 2 * depth + 2
+                ));
+            }
+            continue;
+        }
         let label = format!("{:indent$}{:<12}", "", name.replace('_', " "), indent = 2 * depth);
         match value {
             Value::Object(_) => {

@@ -8,8 +8,8 @@ use hairspring_io::{Axis, Format, ReadOptions, read_groom, read_scene};
 use hairspring_scene::{Guides, Scene, SceneGroom};
 use std::path::{Path, PathBuf};
 
-/// The units of a file, if the file does not specify them.
-#[derive(Args, Clone, Copy)]
+/// The conventions of a file that it does not specify.
+#[derive(Args, Clone, Copy, Default)]
 pub struct Units {
     /// Meters in one unit of the file, if the file does not specify it [default: guessed; the guess is
     /// printed]
@@ -19,6 +19,10 @@ pub struct Units {
     /// Axis that points up in the file [default: depends on the format]
     #[arg(long, value_name = "AXIS")]
     pub up: Option<Up>,
+
+    /// Reverse the points of each strand of a groom, so that the last point of the file is the root
+    #[arg(long)]
+    pub reverse: bool,
 }
 
 /// The axis that points up.
@@ -90,17 +94,25 @@ impl Input {
             if self.units.scale.is_some() || self.units.up.is_some() {
                 return Err(Fault::Usage(UNITS_OF_A_SCENE.into()));
             }
+            if self.units.reverse {
+                let text =
+                    "--reverse applies to a groom file; in a scene, set `reverse = true` in its [[groom]]";
+                return Err(Fault::Usage(text.into()));
+            }
             let loaded = read_scene(path).map_err(|e| Fault::reading(e, path))?;
             tell(&loaded.notes, &loaded.repairs, console);
             loaded.value
         } else {
-            let loaded = read_groom(path, &self.units.into()).map_err(|e| match e {
+            let mut loaded = read_groom(path, &self.units.into()).map_err(|e| match e {
                 hairspring_io::Error::Unsupported { .. } if Format::of(path).is_none() => {
                     unknown_extension(path)
                 }
                 other => Fault::reading(other, path),
             })?;
             tell(&loaded.notes, &loaded.repairs, console);
+            if self.units.reverse {
+                loaded.value.reverse();
+            }
             alone(path, loaded.value)
         };
         if let Some(guides) = self.guides {

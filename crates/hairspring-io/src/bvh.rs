@@ -27,6 +27,20 @@ struct Hierarchy {
     channels: Vec<Vec<Channel>>,
 }
 
+/// A motion as the file has it.
+struct Read {
+    motion: Motion,
+    /// Ends of limbs, each as a joint and an offset from it.
+    ends: Vec<(u32, Vec3)>,
+    /// What is wrong with the file's frames.
+    notes: Vec<String>,
+}
+
+/// Frame times that are read [s]. Outside that range a clip's times are no longer exact.
+const FRAME_TIMES: std::ops::RangeInclusive<f64> = 1e-6..=100.0;
+/// Rates that captures have [Hz]. Others are reported.
+const USUAL_RATES: std::ops::RangeInclusive<f64> = 5.0..=500.0;
+
 /// Reads a `.bvh` file, in its own units.
 ///
 /// Rotations are applied in the order in which the file lists them: the first listed is the outermost.
@@ -35,30 +49,40 @@ struct Hierarchy {
 /// Returns an error if the hierarchy is not closed, if a line of frames has too few numbers, or if the frame
 /// time is not above 0.
 pub fn parse(data: &[u8]) -> Result<Motion, Problem> {
-    read(data).map(|(motion, _)| motion)
+    read(data, None).map(|read| read.motion)
 }
 
-/// Reads the motion and the ends of its limbs, each as a joint and an offset from it.
-fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
+/// Reads a file. `rate` replaces its frame rate [Hz].
+fn read(data: &[u8], rate: Option<f64>) -> Result<Read, Problem> {
     let text = as_text(data);
     let mut words = Words::new(&text);
     let Hierarchy { joints, ends, channels } = hierarchy(&mut words)?;
+    let mut notes = Vec::new();
     words.expect("Frames:")?;
-    let frames: usize = words.number("the number of frames")?;
+    let named: usize = words.number("the number of frames")?;
     let line = words.line();
     words.expect("Frame")?;
     words.expect("Time:")?;
     let frame_time: f64 = words.number("the time of a frame")?;
-    // A frame takes 1 µs to 100 s. Outside that range a clip's times are no longer exact.
-    if !(1e-6..=100.0).contains(&frame_time) {
+    if rate.is_none() && !FRAME_TIMES.contains(&frame_time) {
         return Err(Problem::line(
             words.line(),
-            format!("a frame time of {frame_time} s is not between 0.000001 and 100"),
+            format!(
+                "a frame time of {frame_time} s is not between 0.000001 and 100; correct it, or set `rate` in [clip]"
+            ),
         ));
     }
     let width: usize = channels.iter().map(Vec::len).sum();
+    // The lines are counted if the header names no frames.
+    let frames = if named == 0 { words.numbers_left().checked_div(width).unwrap_or(0) } else { named };
+    if frames == 0 {
+        return Err(Problem::line(line, "the file holds no frames; export the motion again"));
+    }
+    if named == 0 {
+        notes.push(format!("the header names 0 frames; {frames} were counted in the file and are used; correct `Frames:` in the file"));
+    }
     // A number and a space take at least two bytes. A file without channels has one still frame.
-    if frames == 0 || frames.saturating_mul(width.max(1)) > text.len() / 2 + 1 {
+    if frames.saturating_mul(width.max(1)) > text.len() / 2 + 1 {
         let text =
             format!("{frames} frames of {width} numbers do not fit into a file of {} bytes", text.len());
         return Err(Problem::line(line, text));
@@ -70,10 +94,35 @@ fn read(data: &[u8]) -> Result<(Motion, Vec<(u32, Vec3)>), Problem> {
             samples.push(local(joint, channels, || words.finite(&format!("a number of frame {frame}")))?);
         }
     }
+    let left = if named == 0 { 0 } else { words.numbers_left() };
+    if left > 0 {
+        let there = match left.checked_div(width) {
+            Some(more) if more > 0 => format!("the file holds {} frames", frames + more),
+            _ => format!("{left} numbers follow the last frame"),
+        };
+        notes.push(format!(
+            "{there}, but its header names {named}; only these are used; correct `Frames:` in the file to use the rest"
+        ));
+    }
     // Frame times are rounded to about six digits and stand for a standard rate.
-    let rate = FrameRate::nearest(1.0 / frame_time).map_or(1.0 / frame_time, FrameRate::hertz);
-    let clip = Clip { name: String::new(), rate, joint_count: joints.len(), samples };
-    Ok((Motion { joints, clip }, ends))
+    let hertz = rate.unwrap_or(1.0 / frame_time);
+    let rate_used = FrameRate::nearest(hertz).map_or(hertz, FrameRate::hertz);
+    if rate.is_none() && !USUAL_RATES.contains(&hertz) {
+        notes.push(format!(
+            "a frame takes {frame_time} s ({hertz:.3} Hz), which is unusual; if that is wrong, set the rate in [clip], such as `rate = {:?}`",
+            likely_rate(frame_time)
+        ));
+    }
+    let clip = Clip { name: String::new(), rate: rate_used, joint_count: joints.len(), samples };
+    Ok(Read { motion: Motion { joints, clip }, ends, notes })
+}
+
+/// Returns the rate that an unusual frame time probably stands for [Hz]: it may be the rate itself, or in
+/// milliseconds.
+fn likely_rate(frame_time: f64) -> f64 {
+    const RATES: [f64; 11] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 200.0, 240.0];
+    let near = |hertz: f64| RATES.into_iter().find(|rate| (hertz / rate - 1.0).abs() < 0.01);
+    near(frame_time).or_else(|| near(1000.0 / frame_time)).unwrap_or(30.0)
 }
 
 /// Units that captures use [m]: meters, centimeters, CMU's (1/0.45 inch), inches, decimeters.
@@ -91,13 +140,13 @@ const PERSON: std::ops::RangeInclusive<f32> = 1.35..=1.95;
 const TYPICAL: f32 = 1.6;
 
 /// Reads a `.bvh` file and converts it to meters and Y up. The unit and the up axis are guessed from the
-/// person's height in the frames; the notes say what was guessed.
+/// person's height in the frames; the notes say what was guessed. `rate` replaces the file's frame rate [Hz].
 pub(crate) fn read_in_meters(
     data: &[u8],
     options: &ReadOptions,
+    rate: Option<f64>,
 ) -> Result<(Motion, f32, Vec<String>), Problem> {
-    let (mut motion, ends) = read(data)?;
-    let mut notes = Vec::new();
+    let Read { mut motion, ends, mut notes } = read(data, rate)?;
     let size = median_size(&motion, &ends);
     let up = options.up.unwrap_or(if size.z > size.y { Axis::Z } else { Axis::Y });
     if options.up.is_none() && up == Axis::Z {

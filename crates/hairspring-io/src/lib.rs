@@ -14,8 +14,10 @@ mod observe;
 mod polygon;
 mod save;
 mod skin;
+mod skin_distance;
 mod strands;
 mod text;
+mod tfx_text;
 mod units;
 
 pub mod bvh;
@@ -36,5 +38,6 @@ pub use motion::Motion;
 pub use observe::observe_files;
 pub use save::{atomically, write_groom, write_strands};
 pub use scene::{read_scene, read_scene_text, read_settings, same_geometry, scene_text};
+pub use skin_distance::SkinDistance;
 pub use strands::Strands;
 pub use units::{Axis, ReadOptions};

@@ -6,7 +6,7 @@ use crate::{
     gltf, hair, obj,
     strands::Read,
     text, tfx, tfxbone, tfxmesh,
-    units::{FileUnits, Subject, apply_to_body, extent, settle},
+    units::{FileUnits, FitUnit, apply_to_body, extent, settle},
     usc,
 };
 use hairspring::{
@@ -99,6 +99,15 @@ const MAX_FILE: u64 = 4 << 30;
 /// # Errors
 /// Returns an error if the file is missing, unreadable, of another kind, malformed or without strands.
 pub fn read_groom(path: &Path, options: &ReadOptions) -> Result<Loaded<Groom>> {
+    read_groom_on(path, options, None)
+}
+
+/// Like [`read_groom`], on a body that helps to guess the unit.
+pub(crate) fn read_groom_on(
+    path: &Path,
+    options: &ReadOptions,
+    fit: Option<FitUnit<'_>>,
+) -> Result<Loaded<Groom>> {
     let known = [&Format::GROOMS[..], &[Format::Obj]].concat();
     let format = format_of(path, &known, "a hairstyle")?;
     check_scale(path, options)?;
@@ -113,7 +122,7 @@ pub fn read_groom(path: &Path, options: &ReadOptions) -> Result<Loaded<Groom>> {
     if read.groom.strand_count() == 0 {
         return Err(Problem::whole("the file holds no strands").in_file(path));
     }
-    let (mut groom, scale, notes) = read.finish(options);
+    let (mut groom, scale, notes) = read.finish(options, fit);
     if let Some(far) = first_imprecise(&groom) {
         return Err(Problem::whole(far.to_string()).in_file(path));
     }
@@ -152,7 +161,7 @@ fn read_character(path: &Path, options: &ReadOptions) -> Result<Loaded<Character
     }
     .map_err(|p| p.in_file(path))?;
     let extent = extent(character.body.mesh.positions.iter().copied());
-    let (scale, turn) = settle(options, units, Subject::Body, extent, &mut notes);
+    let (scale, turn) = settle(options, units, extent, &mut notes);
     apply_to_body(&mut character.body, &mut character.clips, scale, turn);
     let parts = character.body.mesh.parts.iter_mut().map(|part| &mut part.name);
     let joints = character.body.joints.iter_mut().map(|joint| &mut joint.name);
@@ -167,11 +176,22 @@ fn read_character(path: &Path, options: &ReadOptions) -> Result<Loaded<Character
 /// Returns an error if the file is missing, unreadable, of another kind or malformed, or if there is no such
 /// animation.
 pub fn read_motion(path: &Path, name: Option<&str>, options: &ReadOptions) -> Result<Loaded<Motion>> {
+    read_motion_at(path, name, options, None)
+}
+
+/// Like [`read_motion`]. `rate` replaces the frame rate of a `.bvh` file [Hz].
+pub(crate) fn read_motion_at(
+    path: &Path,
+    name: Option<&str>,
+    options: &ReadOptions,
+    rate: Option<f64>,
+) -> Result<Loaded<Motion>> {
     let format = format_of(path, &[Format::Bvh, Format::Gltf], "a motion")?;
     if format == Format::Bvh {
         check_scale(path, options)?;
         let data = bytes_of(path)?;
-        let (mut motion, scale, notes) = bvh::read_in_meters(&data, options).map_err(|p| p.in_file(path))?;
+        let read = bvh::read_in_meters(&data, options, rate);
+        let (mut motion, scale, notes) = read.map_err(|p| p.in_file(path))?;
         motion.clip.name = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
         make_printable(motion.joints.iter_mut().map(|joint| &mut joint.name).chain([&mut motion.clip.name]));
         return Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes: plain(notes) });

@@ -2,7 +2,7 @@
 
 use crate::{
     Place, Problem, ReadOptions,
-    units::{FileUnits, Subject, apply_to_groom, extent, settle},
+    units::{FileUnits, FitUnit, apply_to_groom, settle_groom},
 };
 use glam::{Vec2, Vec3};
 use hairspring::groom::{DEFAULT_RADIUS, Groom};
@@ -93,10 +93,10 @@ impl Read {
         self.groom
     }
 
-    /// Returns the groom in meters and Y up, the meters per file unit, and the notes.
-    pub fn finish(mut self, options: &ReadOptions) -> (Groom, f32, Vec<String>) {
-        let extent = extent(self.groom.points.iter().copied());
-        let (scale, turn) = settle(options, self.units, Subject::Hair, extent, &mut self.notes);
+    /// Returns the groom in meters and Y up, the meters per file unit, and the notes. A unit that is neither
+    /// given nor in the file is chosen by `fit`, or guessed from the sizes.
+    pub fn finish(mut self, options: &ReadOptions, fit: Option<FitUnit<'_>>) -> (Groom, f32, Vec<String>) {
+        let (scale, turn) = settle_groom(options, self.units, &self.groom, fit, &mut self.notes);
         apply_to_groom(&mut self.groom, scale, turn);
         self.groom.radii = match self.radii {
             None => vec![DEFAULT_RADIUS; self.groom.points.len()],

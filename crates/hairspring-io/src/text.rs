@@ -30,6 +30,7 @@ impl<'a> Iterator for Lines<'a> {
 }
 
 /// The words of a text, with their lines.
+#[derive(Clone)]
 pub(crate) struct Words<'a> {
     lines: std::iter::Enumerate<Lines<'a>>,
     words: std::str::SplitWhitespace<'a>,
@@ -61,6 +62,12 @@ impl<'a> Words<'a> {
     /// Returns the rest of the last word's line.
     pub(crate) fn rest_of_line(&mut self) -> Vec<&'a str> {
         self.words.by_ref().collect()
+    }
+
+    /// Counts the finite numbers from here to the end, or to the first word that is none.
+    pub(crate) fn numbers_left(&self) -> usize {
+        let mut rest = self.clone();
+        std::iter::from_fn(|| rest.word().and_then(finite)).count()
     }
 
     /// Reads the next word, which must be `wanted`, ignoring case.

@@ -1,10 +1,12 @@
 //! Reader and writer for TressFX `.tfx` grooms, versions 3.0 and 4.0 (AMD TressFX, `TressFXFileFormat.h` of
-//! branches 3.1.1 and 4.1): a header of offsets, then strands that all have the same number of points.
+//! branches 3.1.1 and 4.1): a header of offsets, then strands that all have the same number of points. Files of
+//! versions 1 and 2 are text (`tfx_text.rs`).
 
 use crate::{
     Place, Problem,
     bytes::Bytes,
     strands::{Read, Strands},
+    tfx_text,
     units::{Axis, FileUnits},
 };
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
@@ -69,7 +71,7 @@ struct Layout {
     notes: Vec<String>,
 }
 
-/// Reads a `.tfx` file of version 3 or 4, in its own units.
+/// Reads a `.tfx` file of version 1 to 4, in its own units.
 ///
 /// # Errors
 /// Returns an error for another version, offsets outside the file, or a truncated file.
@@ -78,6 +80,9 @@ pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
 }
 
 pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
+    if tfx_text::is_text(data) {
+        return tfx_text::read(data);
+    }
     let mut bytes = Bytes::new(data);
     let layout = layout(&mut bytes)?;
     let Layout { strands, points_per_strand, .. } = layout;

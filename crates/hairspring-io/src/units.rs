@@ -36,52 +36,58 @@ pub(crate) struct FileUnits {
     pub up: Option<Axis>,
 }
 
-/// The kind of object, which determines the plausible sizes.
-#[derive(Clone, Copy)]
-pub(crate) enum Subject {
-    /// A hairstyle: its box is 0.1 to 1.5 m.
-    Hair,
-    /// A bust or a whole figure: its box is 0.15 to 2.5 m.
-    Body,
-}
+/// Plausible sizes of the longest side of the box around a bust or a whole figure [m].
+const BODY: std::ops::RangeInclusive<f32> = 0.15..=2.5;
+/// Typical sizes of a body, which a guess tries to match [m]: a bust, an adult.
+const TYPICAL_BODIES: [f32; 2] = [0.5, 1.7];
 
-impl Subject {
-    /// Plausible sizes of the box's longest side [m].
-    fn range(self) -> std::ops::RangeInclusive<f32> {
-        match self {
-            Self::Hair => 0.1..=1.5,
-            Self::Body => 0.15..=2.5,
-        }
-    }
-
-    /// Typical sizes, which a guess tries to match [m]: shoulder-length hair; a bust or an adult.
-    fn typical(self) -> &'static [f32] {
-        match self {
-            Self::Hair => &[0.35],
-            Self::Body => &[0.5, 1.7],
-        }
-    }
-}
+/// Plausible sizes of the longest side of the box around a head of hair [m].
+const HAIR: std::ops::RangeInclusive<f32> = 0.1..=1.5;
+/// Sizes of the box that a groom may have at most: brows or lashes, and the fur of a large animal [m].
+const GROOM: std::ops::RangeInclusive<f32> = 0.02..=3.0;
+/// Lengths that the median strand of a groom may have at most [m].
+const STRAND: std::ops::RangeInclusive<f32> = 0.002..=2.0;
 
 /// Common units of files.
 const UNITS: [(f32, &str); 4] =
     [(1.0, "meters"), (0.1, "decimeters"), (0.01, "centimeters"), (0.001, "millimeters")];
 
-/// Returns the scale and rotation to apply, and adds a note about whatever was guessed. `extent` is the box's
-/// longest side [file units].
+/// Returns the scale and rotation to apply to a body, and adds a note about whatever was guessed. `extent` is
+/// the box's longest side [file units].
 pub(crate) fn settle(
     options: &ReadOptions,
     file: FileUnits,
-    subject: Subject,
     extent: f32,
     notes: &mut Vec<String>,
 ) -> (f32, Quat) {
     let scale = options.scale.or(file.scale).unwrap_or_else(|| {
-        let (scale, note) = guess(subject, extent);
+        let (scale, note) = guess_body(extent);
         notes.extend(note);
         scale
     });
     (scale, turn_of(options.up.or(file.up).unwrap_or(Axis::Y)))
+}
+
+/// Chooses a groom's unit by the body that it grows on. Given the two ends of some strands, Y up, in the
+/// file's units, and the units to try, the first of which is preferred, it returns the unit that puts the
+/// strands on the skin; `None` if none does.
+pub(crate) type FitUnit<'a> = &'a dyn Fn(&[[Vec3; 2]], &[f32]) -> Option<f32>;
+
+/// Returns the scale and rotation to apply to a groom, and adds a note about whatever was guessed.
+pub(crate) fn settle_groom(
+    options: &ReadOptions,
+    file: FileUnits,
+    groom: &Groom,
+    fit: Option<FitUnit<'_>>,
+    notes: &mut Vec<String>,
+) -> (f32, Quat) {
+    let turn = turn_of(options.up.or(file.up).unwrap_or(Axis::Y));
+    let scale = options.scale.or(file.scale).unwrap_or_else(|| {
+        let (scale, note) = guess_groom(groom, turn, fit);
+        notes.extend(note);
+        scale
+    });
+    (scale, turn)
 }
 
 /// The rotation that maps `up` to +Y.
@@ -92,46 +98,152 @@ pub(crate) fn turn_of(up: Axis) -> Quat {
     }
 }
 
-/// Guesses the meters per unit of an object whose box has a longest side of `extent` units, and returns a
-/// note about it. The unit is meters if that is plausible, otherwise the unit that gives the size nearest to
-/// a typical one.
-fn guess(subject: Subject, extent: f32) -> (f32, Option<String>) {
+/// Guesses the meters per unit of a body whose box has a longest side of `extent` units, and returns a note
+/// about it. The unit is meters if that is plausible, otherwise the unit that gives the size nearest to a
+/// typical one.
+fn guess_body(extent: f32) -> (f32, Option<String>) {
     if !(extent.is_finite() && extent > 0.0) {
         return (1.0, None);
     }
-    if subject.range().contains(&extent) {
-        let note = format!(
-            "the file has no unit; read as meters (its longest side is {extent:.3} m); set `scale` to change it"
-        );
-        return (1.0, Some(note));
+    if BODY.contains(&extent) {
+        return (1.0, Some(note(1.0, extent, true)));
     }
     let off = |scale: f32| {
-        let typical = subject.typical().iter();
+        let typical = TYPICAL_BODIES.iter();
         typical.map(|t| (extent * scale / t).ln().abs()).fold(f32::INFINITY, f32::min)
     };
-    let nearest = UNITS.into_iter().min_by(|a, b| off(a.0).total_cmp(&off(b.0)));
-    let (scale, name) = nearest.unwrap_or(UNITS[0]);
+    let scale = nearest(off);
+    (scale, Some(note(scale, extent * scale, BODY.contains(&(extent * scale)))))
+}
+
+/// Guesses the meters per unit of a groom, and returns a note about it: the unit that puts its strands on the
+/// body, otherwise the one that gives plausible sizes.
+fn guess_groom(groom: &Groom, turn: Quat, fit: Option<FitUnit<'_>>) -> (f32, Option<String>) {
+    let strays = strays(groom);
+    let extent = groom_extent(groom, strays);
+    let length = median_length(groom);
+    if !(extent.is_finite() && extent > 0.0) {
+        return (1.0, None);
+    }
+    let by_size = by_size(extent, length);
+    let step = groom.strand_count().div_ceil(500).max(1);
+    let ends: Vec<[Vec3; 2]> = (0..groom.strand_count())
+        .step_by(step)
+        .filter_map(|s| Some([*groom.strand(s).first()?, *groom.strand(s).last()?]))
+        .filter(|ends| ends.iter().all(|p| p.is_finite() && *p != Vec3::ZERO))
+        .map(|ends| ends.map(|p| turned(turn, p)))
+        .collect();
+    let fits = |scale: &f32| GROOM.contains(&(extent * scale)) && STRAND.contains(&(length * scale));
+    let units = UNITS.iter().map(|(scale, _)| *scale).chain([0.0254]);
+    let units: Vec<f32> = std::iter::once(by_size).chain(units).filter(fits).collect();
+    let of_body = fit.and_then(|fit| fit(&ends, &units));
+    let scale = of_body.unwrap_or(by_size);
     let size = extent * scale;
-    let note = if subject.range().contains(&size) {
-        format!(
-            "the file has no unit; guessed {name} (its longest side is then {size:.3} m); set `scale` to change it"
-        )
-    } else {
-        format!(
-            "the file has no unit, and no usual one fits; read as {name} (its longest side is then {size:.3} m); set `scale`"
-        )
+    let mut text = match of_body {
+        Some(_) => format!(
+            "the file has no unit; guessed {}, which puts its roots on the skin of the body; set `scale` to change it",
+            unit_name(scale)
+        ),
+        None => note(scale, size, GROOM.contains(&size)),
     };
-    (scale, Some(note))
+    if strays > 0 {
+        text += &format!(" ({strays} points at the origin, far from the others, do not count)");
+    }
+    (scale, Some(text))
+}
+
+/// The usual unit that gives a groom of this size and median strand length [file units] plausible sizes.
+fn by_size(extent: f32, length: f32) -> f32 {
+    if HAIR.contains(&extent) {
+        return 1.0;
+    }
+    // A head of hair of shoulder length; or strands (brows, beard, fur) that are short compared with what they
+    // grow on, from a brow to a large animal. Distances are in powers of e. Few tools use decimeters.
+    let off = |scale: f32| {
+        let (extent, length) = (extent * scale, length.max(f32::MIN_POSITIVE) * scale);
+        let beyond = |value: f32, low: f32, high: f32| (low / value).max(value / high).ln().max(0.0);
+        let head = (extent / 0.35).ln().abs() + (length / 0.25).ln().abs();
+        let short =
+            (length / 0.01).ln().abs() + beyond(extent, 0.05, 2.0) + beyond(length / extent, 0.0, 0.1);
+        head.min(short) + if scale == 0.1 { 0.5 } else { 0.0 }
+    };
+    nearest(off)
+}
+
+/// The usual unit with the smallest distance.
+fn nearest(off: impl Fn(f32) -> f32) -> f32 {
+    UNITS.into_iter().map(|(scale, _)| scale).min_by(|a, b| off(*a).total_cmp(&off(*b))).unwrap_or(1.0)
+}
+
+fn unit_name(scale: f32) -> String {
+    let known = UNITS.iter().find(|(s, _)| *s == scale).map(|(_, name)| (*name).to_owned());
+    known.unwrap_or_else(|| if scale == 0.0254 { "inches".into() } else { format!("units of {scale} m") })
+}
+
+/// A note about a guess from the size of an object [m].
+fn note(scale: f32, size: f32, plausible: bool) -> String {
+    let name = unit_name(scale);
+    match (plausible, scale == 1.0) {
+        (true, true) => format!(
+            "the file has no unit; read as meters (its longest side is {size:.3} m); set `scale` to change it"
+        ),
+        (true, false) => format!(
+            "the file has no unit; guessed {name} (its longest side is then {size:.3} m); set `scale` to change it"
+        ),
+        _ => format!(
+            "the file has no unit, and no usual one fits; read as {name} (its longest side is then {size:.3} m); set `scale`"
+        ),
+    }
+}
+
+/// Number of points exactly at the origin that are no part of the hair: at most a tenth of all, and farther
+/// from the box of the others than its longest side.
+fn strays(groom: &Groom) -> usize {
+    let at_origin = groom.points.iter().filter(|p| **p == Vec3::ZERO).count();
+    if at_origin == 0 || at_origin * 10 > groom.points.len() {
+        return 0;
+    }
+    let others = groom.points.iter().copied().filter(|p| *p != Vec3::ZERO && p.is_finite());
+    let (lo, hi) = bounds(others);
+    let outside = Vec3::ZERO.clamp(lo, hi).length();
+    if outside > 0.5 * (hi - lo).max_element() { at_origin } else { 0 }
+}
+
+/// The longest side of the box around a groom [file units]. Stray points do not count: those at the origin, and
+/// the hundredth of all points that is farthest out, if the box without them is less than half as long.
+fn groom_extent(groom: &Groom, strays: usize) -> f32 {
+    let counts = |p: &Vec3| p.is_finite() && (strays == 0 || *p != Vec3::ZERO);
+    let points = || groom.points.iter().copied().filter(counts);
+    let whole = extent(points());
+    let step = groom.points.len().div_ceil(20_000).max(1);
+    let inner = |axis: usize| {
+        let mut along: Vec<f32> = points().step_by(step).map(|p| p[axis]).collect();
+        along.sort_by(f32::total_cmp);
+        let cut = along.len() / 100;
+        let at = |i: usize| along.get(i).copied().unwrap_or(0.0);
+        at(along.len().saturating_sub(1 + cut)) - at(cut)
+    };
+    let inner = inner(0).max(inner(1)).max(inner(2));
+    if inner > 0.0 && inner < 0.5 * whole { inner } else { whole }
+}
+
+/// The median length of the strands [file units]; 0 if there are none.
+fn median_length(groom: &Groom) -> f32 {
+    let mut lengths: Vec<f32> =
+        (0..groom.strand_count()).map(|s| groom.strand_length(s)).filter(|l| l.is_finite()).collect();
+    lengths.sort_by(f32::total_cmp);
+    lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)
 }
 
 /// The longest side of the box around the finite points in `points`; 0 if there are none.
 pub(crate) fn extent(points: impl IntoIterator<Item = Vec3>) -> f32 {
-    let mut finite = points.into_iter().filter(|p| p.is_finite());
-    let Some(first) = finite.next() else {
-        return 0.0;
-    };
-    let (lo, hi) = finite.fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)));
-    (hi - lo).max_element()
+    let (lo, hi) = bounds(points.into_iter().filter(|p| p.is_finite()));
+    (hi - lo).max_element().max(0.0)
+}
+
+/// The box around points; inverted if there are none.
+fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
+    points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
 }
 
 /// Rotates `p` by `turn`: exactly if `turn` is the identity, and without rounding for ±90° about X.

@@ -15,6 +15,7 @@ define_settings! {
         height: Option<f32> = None, ["m"], {finite},
             default "the lowest point of the body at rest; 0 without a body", when When::On("ground.on");
         /// Color of the floor, lit by the key light and the sky. It fades into the backdrop.
+        #[serde(deserialize_with = "crate::deserialize_optional_color")]
         color: Option<Vec3> = None, "linear RGB", {color},
             default "the backdrop, with the shadow alone", when When::On("ground.on");
     }

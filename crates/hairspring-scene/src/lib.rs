@@ -3,6 +3,7 @@
 
 pub mod builtin;
 mod camera;
+mod color;
 mod ground;
 mod hand;
 mod look;
@@ -10,6 +11,7 @@ mod settings;
 pub mod stage;
 
 pub use camera::Camera;
+pub use color::{color_from_hex, deserialize_color, deserialize_optional_color};
 pub use ground::Ground;
 pub use hand::Hand;
 pub use look::{HairColor, HairLook};

@@ -18,8 +18,10 @@ define_settings! {
     #[derive(Clone, Debug, PartialEq)]
     pub struct HairLook {
         /// Color of a thick lock of hair at the root. The default is dark brown.
+        #[serde(deserialize_with = "crate::deserialize_color")]
         root_color: Vec3 = Vec3::new(0.045, 0.022, 0.011), "linear RGB", {color}, when COLORS;
         /// Color of a thick lock of hair at the tip. The default is a lighter brown, as from sun and washing.
+        #[serde(deserialize_with = "crate::deserialize_color")]
         tip_color: Vec3 = Vec3::new(0.10, 0.05, 0.024), "linear RGB", {color}, when COLORS;
         /// Pigment in the fiber, instead of the two colors: 0 is white, 1 is black.
         ///
@@ -29,6 +31,7 @@ define_settings! {
         /// is slightly warm, like light brown hair.
         melanin_redness: f32 = 0.3, "fraction", {0 to 1}, when When::Given("groom.look.melanin");
         /// Dye over the melanin or the colors: the color that white hair would take on. White: no dye.
+        #[serde(deserialize_with = "crate::deserialize_color")]
         dye: Vec3 = Vec3::ONE, "linear RGB", {color};
         /// Variation of the pigment from strand to strand. The default is visible only as depth.
         variation: f32 = 0.25, "fraction", {0 to 1};

@@ -62,7 +62,7 @@ pub(super) fn run(
     as_json: bool,
     console: Console,
 ) -> Result<(), Fault> {
-    let units = Units { scale: None, up: None };
+    let units = Units::default();
     let input = Input { path: path.into(), units, guides: None, substeps: None };
     let mut scene = input.scene(console)?;
     if rest {

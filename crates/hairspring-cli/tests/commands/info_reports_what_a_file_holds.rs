@@ -73,3 +73,50 @@ fn scenes_and_bodies() {
     let body = json(&succeed(folder.path(), &["info", text(&body), "--json"]));
     assert_eq!((&body["vertices"], &body["triangles"]), (&3.into(), &1.into()));
 }
+
+#[test]
+fn places_of_joints_and_parts_and_the_distance_of_roots() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("body.obj", "g floor\nv 0 0 0\nv 1 0 0\nv 0 0 1\nf 1 3 2\ng wall\nv 0 2 0\nv 1 2 0\nf 1 4 5\n");
+    let body = json(&succeed(folder.path(), &["info", "body.obj", "--json", "--scale", "1"]));
+    assert_eq!(body["parts"], serde_json::json!(["floor", "wall"]));
+    assert_eq!(body["part_bounds_m"][0], serde_json::json!([[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]]));
+    assert_eq!(body["part_bounds_m"][1], serde_json::json!([[0.0, 0.0, 0.0], [1.0, 2.0, 0.0]]));
+    let lines = succeed(folder.path(), &["info", "body.obj", "--scale", "1"]);
+    assert!(lines.contains("part bounds m") && lines.contains("wall "), "{lines}");
+
+    write(
+        "walk.bvh",
+        "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zposition\nJOINT Head\n{\nOFFSET 0 0.5 0\n\
+         CHANNELS 0\n}\n}\nMOTION\nFrames: 1\nFrame Time: 0.02\n0 1 0\n",
+    );
+    let motion = json(&succeed(folder.path(), &["info", "walk.bvh", "--json", "--scale", "1"]));
+    assert_eq!(motion["joints"], serde_json::json!(["Hips", "Head"]));
+    assert_eq!(motion["joint_positions_m"], serde_json::json!([[0.0, 1.0, 0.0], [0.0, 1.5, 0.0]]));
+
+    write_groom(folder.path(), 20);
+    write("scene.toml", "[body]\nfile = \"body.obj\"\nscale = 1.0\n[[groom]]\nfile = \"groom.hair\"\n");
+    let output = crate::common::run(folder.path(), &["info", "scene.toml", "--json"]);
+    let scene = json(&String::from_utf8(output.stdout).unwrap());
+    let distances = &scene["grooms"][0]["root_distance_m"];
+    assert!(distances[0].as_f64().unwrap() <= distances[1].as_f64().unwrap(), "{distances}");
+    let notes = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(notes.contains("from the skin"), distances[1].as_f64().unwrap() > 0.01, "{notes}");
+}
+
+#[test]
+fn strands_are_reversed_on_request() {
+    let folder = tempfile::tempdir().unwrap();
+    write_groom(folder.path(), 5);
+    succeed(folder.path(), &["convert", "groom.hair", "turned.hair", "--reverse"]);
+    let path = folder.path().join("turned.hair");
+    let turned = hairspring_io::read_groom(&path, &hairspring_io::ReadOptions::default()).unwrap().value;
+    let mut groom = groom(5);
+    groom.reverse();
+    assert_eq!(turned.points, groom.points);
+    succeed(folder.path(), &["info", "groom.hair", "--reverse"]);
+    write_scene(folder.path(), 70);
+    let error = crate::common::fail(folder.path(), &["info", "scene.toml", "--reverse"], 2);
+    assert!(error.contains("--reverse applies to a groom file"), "{error}");
+}

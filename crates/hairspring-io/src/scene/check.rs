@@ -69,6 +69,8 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             ClipFile::check("scale", &clip.scale),
             ClipFile::check("pivot", &clip.pivot),
             ClipFile::check("facing", &clip.facing),
+            ClipFile::check("rate", &clip.rate),
+            check(clip.rate.is_none() || clip.file.is_some(), "rate", "given with a `file`"),
             check(
                 clip.pivot.is_none() || clip.joint.is_some() || !keys.is_empty(),
                 "pivot",

@@ -8,7 +8,7 @@ use hairspring::{
     material::PRESETS,
     settings::{Effects, Neighbours, Solver, Volume, When, Wind, define_settings},
 };
-use hairspring_scene::{Camera, Collider, Ground, Guides, Hand, SceneSheet};
+use hairspring_scene::{Camera, Collider, Ground, Guides, Hand, SceneSheet, deserialize_optional_color};
 use serde::{Deserialize, Deserializer};
 use std::{collections::BTreeMap, path::PathBuf};
 use toml::Spanned;
@@ -94,9 +94,9 @@ define_settings! {
     file struct BuiltinFile {
         /// Hairstyle of the built-in head. It sets cut, wave, color and material together.
         style: Option<Spanned<String>> = "wavy", "none", {words &PRESETS};
-        /// Number of hairs on the scalp of the built-in head. A human head has about 100,000. Fewer hairs are drawn
-        /// wider, so that the scalp stays covered.
-        strands: Option<Spanned<u32>> = 100_000, "strands", {1 to 10000000};
+        /// Number of hairs on the scalp of the built-in head, 0 for a bald head. A human head has about 100,000. Fewer
+        /// hairs are drawn wider, so that the scalp stays covered.
+        strands: Option<Spanned<u32>> = 100_000, "strands", {0 to 10000000};
         /// Number of simulated hairs. The other hairs follow up to three of them.
         #[serde(default, deserialize_with = "guides_or_default")]
         guides: Option<Guides> = 2_000, "strands", {text "1 or more, or `\"all\"`"};
@@ -130,6 +130,7 @@ define_settings! {
         /// MakeHuman skin weights of an `.obj`.
         weights: Option<FileName>, "none", {text "MakeHuman skin weights (JSON); needs `rig`"}, default "none";
         /// Color of the whole surface, instead of the file's.
+        #[serde(default, deserialize_with = "deserialize_optional_color")]
         color: Option<Vec3>, "linear RGB", {color}, default "the file's";
         /// Roughness of the whole surface, instead of the file's: 0 is glossy, 1 is matte.
         roughness: Option<f32>, "fraction", {0 to 1}, default "the file's";
@@ -158,6 +159,8 @@ define_settings! {
         scale: Option<f32>, ["m"], {above 0}, default "from the format, or guessed and reported";
         /// The axis that points up.
         up: Option<Axis>, "none", {words &["y", "z"]}, default "from the format, or guessed and reported";
+        /// Frame rate of the motion file, instead of the one that it states.
+        rate: Option<f64>, ["Hz"], {0.01 to 1000000}, default "from the file";
         /// First frame of the motion file that is used.
         #[serde(default)]
         start: usize = 0, "frame index, from 0", {text "0 or more"};

@@ -3,15 +3,30 @@
 use super::{
     Reader,
     file::{self, FileName},
-    groom_file::GroomFile,
+    groom_file::{ColorSource, GroomFile},
 };
-use crate::{ReadOptions, Result, read_bones, read_groom, tfxbone::RootBones};
+use crate::{
+    ReadOptions, Result,
+    load::read_groom_on,
+    read_bones,
+    skin_distance::{SkinDistance, unit_on_skin},
+    tfxbone::RootBones,
+    units::{FitUnit, extent},
+};
 use glam::Affine3A;
 use hairspring::{
-    body::Body,
+    body::{Body, NearestTree},
     groom::{Groom, bind_roots_where, thicken},
     material::Material,
 };
+use hairspring_scene::HairLook;
+
+/// The surface of the body that strands are placed on.
+struct Skin<'a> {
+    tree: NearestTree<'a>,
+    /// Longest side of the box around the body [m].
+    size: f32,
+}
 
 impl Reader<'_> {
     /// Returns the strands of a `[[groom]]`, placed on the `body`.
@@ -21,19 +36,28 @@ impl Reader<'_> {
         materials: &[Material],
         body: Option<&Body>,
     ) -> Result<Groom> {
+        let t = named.transform;
+        let place = Affine3A::from_scale_rotation_translation(t.scale, file::turn(t.rotation), t.position);
+        let skin = body.filter(|_| named.file.is_some()).map(|body| Skin {
+            tree: NearestTree::new(&body.mesh),
+            size: extent(body.mesh.positions.iter().copied()),
+        });
         let mut groom = match (&named.file, &named.grow) {
-            (Some(file), _) => self.read_strands(named, file)?,
+            (Some(file), _) => self.read_strands(named, file, place, skin.as_ref())?,
             (None, Some(grow)) => self.grown(grow, body)?,
             // The check of the text has rejected this case already.
             (None, None) => Groom::default(),
         };
-        let t = named.transform;
-        let place = Affine3A::from_scale_rotation_translation(t.scale, file::turn(t.rotation), t.position);
         if place != Affine3A::IDENTITY {
             groom.points.iter_mut().for_each(|p| *p = place.transform_point3(*p));
         }
         if !groom.roots.is_empty() && place != Affine3A::IDENTITY {
             groom.roots.clear();
+        }
+        if let (Some(file), Some(skin)) = (&named.file, &skin) {
+            let note =
+                SkinDistance::new(&groom, &skin.tree).and_then(|distance| distance.note(named.reverse));
+            self.note(&self.resolve(file), note.into_iter().collect());
         }
         if named.thicken.copies > 0 {
             groom.roots.clear();
@@ -57,10 +81,34 @@ impl Reader<'_> {
     }
 
     /// Reads the strands of a groom's file.
-    fn read_strands(&mut self, named: &GroomFile, file: &FileName) -> Result<Groom> {
+    fn read_strands(
+        &mut self,
+        named: &GroomFile,
+        file: &FileName,
+        place: Affine3A,
+        skin: Option<&Skin<'_>>,
+    ) -> Result<Groom> {
         let path = self.resolve(file);
         let options = ReadOptions { scale: named.scale, up: named.up };
-        let loaded = self.named(read_groom(&path, &options), file, "groom")?;
+        let fit = skin.map(|skin| {
+            move |ends: &[[glam::Vec3; 2]], units: &[f32]| {
+                unit_on_skin(ends, units, place, &skin.tree, skin.size)
+            }
+        });
+        let read = read_groom_on(&path, &options, fit.as_ref().map(|fit| fit as FitUnit<'_>));
+        let mut loaded = self.named(read, file, "groom")?;
+        if named.reverse {
+            loaded.value.reverse();
+        }
+        if !loaded.value.colors.is_empty() {
+            match named.colors {
+                ColorSource::Look => loaded.value.colors.clear(),
+                ColorSource::File if sets_color(&named.look) => loaded.notes.push(
+                    "the file has a color for each point, which replaces the color of [groom.look]; set `colors = \"look\"` to use that of the look".into(),
+                ),
+                ColorSource::File => {}
+            }
+        }
         self.note(&path, loaded.notes);
         let r = loaded.repairs;
         self.repairs.non_finite_points += r.non_finite_points;
@@ -105,4 +153,13 @@ impl Reader<'_> {
         bind_roots_where(groom, &body.mesh, |s, t| of_root(s).any(|j| follows(t, j)));
         Ok(())
     }
+}
+
+/// Whether a look has other colors than by default.
+fn sets_color(look: &HairLook) -> bool {
+    let plain = HairLook::default();
+    look.root_color != plain.root_color
+        || look.tip_color != plain.tip_color
+        || look.melanin != plain.melanin
+        || look.dye != plain.dye
 }

@@ -25,6 +25,12 @@ define_settings! {
         scale: Option<f32>, ["m"], {above 0}, default "from the format, or guessed and reported";
         /// The axis that points up.
         up: Option<Axis>, "none", {words &["y", "z"]}, default "`\"z\"` for `.hair`, `\"y\"` otherwise";
+        /// Whether the last point of each strand is its root.
+        #[serde(default)]
+        reverse: bool = false, "none", {switch};
+        /// Source of the color of a file that has a color per point: the file, or `look`.
+        #[serde(default)]
+        colors: ColorSource = "file", "none", {words &["file", "look"]};
         /// Placement of the hairstyle, applied after `scale` and `up`.
         #[serde(default)]
         transform: Placement, "none", {table};
@@ -48,6 +54,15 @@ define_settings! {
     }
 }
 
+/// Where the color of hair comes from if the groom's file has a color per point.
+#[derive(Clone, Copy, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum ColorSource {
+    #[default]
+    File,
+    Look,
+}
+
 /// The inputs that determine a groom's strands.
 #[derive(PartialEq)]
 pub(super) struct GroomGeometry<'a> {
@@ -55,6 +70,8 @@ pub(super) struct GroomGeometry<'a> {
     grow: Option<Grown<'a>>,
     thicken: Thicken,
     units: (Option<f32>, Option<Axis>),
+    reverse: bool,
+    colors: ColorSource,
     transform: Placement,
     guides: Guides,
 }
@@ -67,6 +84,8 @@ impl GroomFile {
             grow: self.grow.as_ref().map(|grow| grow.get_ref().geometry()),
             thicken: self.thicken,
             units: (self.scale, self.up),
+            reverse: self.reverse,
+            colors: self.colors,
             transform: self.transform,
             guides: self.guides,
         }

@@ -67,6 +67,27 @@ pub(super) fn over<T: Serialize + DeserializeOwned>(
     fields: toml::Table,
 ) -> Result<T, Problem> {
     let mut all = toml::Table::try_from(base).map_err(|e| Problem::whole(e.to_string()))?;
-    all.extend(fields);
-    all.try_into().map_err(|e: toml::de::Error| problem_in_table(text, start, &e))
+    all.extend(fields.clone());
+    all.clone()
+        .try_into()
+        .map_err(|e: toml::de::Error| problem_in_table(text, start, &e, wrong_field::<T>(&all, &fields)))
+}
+
+/// Returns the field without which the table `all` would be valid, of those given. A field of a table inside
+/// it is preferred.
+fn wrong_field<'a, T: DeserializeOwned>(all: &toml::Table, fields: &'a toml::Table) -> Option<&'a str> {
+    let valid = |table: toml::Table| table.try_into::<T>().is_ok();
+    let without = |key: &str| {
+        let mut rest = all.clone();
+        rest.remove(key);
+        rest
+    };
+    fields.iter().find(|(key, _)| valid(without(key))).map(|(key, value)| {
+        let inner = value.as_table().into_iter().flatten().map(|(inner, _)| inner).find(|inner| {
+            let mut rest = all.clone();
+            rest.get_mut(key).and_then(toml::Value::as_table_mut).map(|table| table.remove(*inner));
+            valid(rest)
+        });
+        inner.unwrap_or(key).as_str()
+    })
 }

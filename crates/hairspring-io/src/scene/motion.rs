@@ -6,7 +6,10 @@ use super::{
     file::{ClipFile, KeyFile, TravelName},
     sentence::unknown,
 };
-use crate::{Character, ReadOptions, Result, load::pick_clip, read_motion};
+use crate::{
+    Character, Format, ReadOptions, Result,
+    load::{pick_clip, read_motion_at},
+};
 use hairspring::body::{Body, Clip, HeadMotion, Key, Travel, head_motion, keyframe_clip, retarget};
 
 impl Reader<'_> {
@@ -43,7 +46,12 @@ impl Reader<'_> {
         };
         let path = self.resolve(file);
         let options = ReadOptions { scale: named.scale, up: named.up };
-        let loaded = self.named(read_motion(&path, named.name.as_deref(), &options), file, "motion")?;
+        if named.rate.is_some() && Format::of(&path) != Some(Format::Bvh) {
+            let text = "`rate` is only for a .bvh file; other formats give the time of each key";
+            return Err(self.wrong(near, "rate", text.into()));
+        }
+        let read = read_motion_at(&path, named.name.as_deref(), &options, named.rate);
+        let loaded = self.named(read, file, "motion")?;
         self.note(&path, loaded.notes);
         let (joints, clip) = (loaded.value.joints, loaded.value.clip);
         let Some(joint) = &named.joint else {
@@ -52,7 +60,14 @@ impl Reader<'_> {
                 self.wrong(near, "file", text.into())
             })?;
             let (matched, all) = (carried.matched, character.body.joints.len());
-            self.note(&path, vec![format!("moves {matched} of the body's {all} joints, by their names")]);
+            let mut notes = vec![format!("moves {matched} of the body's {all} joints, by their names")];
+            if !carried.on_floor {
+                notes.push(format!(
+                    "motion and body have no joint near the floor in common, so the body starts at its own place and moves {:.2} times as far as the motion; to drive it as one piece, set `joint`",
+                    carried.scale
+                ));
+            }
+            self.note(&path, notes);
             return Ok((Some(character.body), Some(self.cut(carried.clip, named, near)?)));
         };
         let Some(pivot) = named.pivot else {

@@ -10,20 +10,35 @@ pub(super) fn line_at(text: &str, byte: usize) -> usize {
 
 /// Converts a TOML error.
 pub(super) fn problem(text: &str, error: &toml::de::Error) -> Problem {
-    let message = reworded(error.message());
     match error.span() {
-        Some(span) => Problem::line(line_at(text, span.start), message),
-        None => Problem::whole(message),
+        Some(span) => {
+            let message = reworded(error.message(), key_of(text, span.start));
+            Problem::line(line_at(text, span.start), message)
+        }
+        None => Problem::whole(reworded(error.message(), None)),
     }
 }
 
-/// Converts an error in a table that begins at byte `start`. The line is that of the key that the error
-/// names, if there is one after `start`.
-pub(super) fn problem_in_table(text: &str, start: usize, error: &toml::de::Error) -> Problem {
-    let key = error.message().strip_prefix("unknown field ").and_then(|m| m.split('`').nth(1));
+/// Converts an error in a table that begins at byte `start`, caused by the field `key` if it is known. The
+/// line is that of the key, if there is one after `start`.
+pub(super) fn problem_in_table(
+    text: &str,
+    start: usize,
+    error: &toml::de::Error,
+    key: Option<&str>,
+) -> Problem {
+    let named = error.message().strip_prefix("unknown field ").and_then(|m| m.split('`').nth(1));
     let from = line_at(text, start);
-    let line = key.and_then(|key| line_of_key(text, from, key)).unwrap_or(from);
-    Problem::line(line, reworded(error.message()))
+    let line = named.or(key).and_then(|key| line_of_key(text, from, key)).unwrap_or(from);
+    Problem::line(line, reworded(error.message(), key))
+}
+
+/// The key whose value begins or continues at byte `at`.
+fn key_of(text: &str, at: usize) -> Option<&str> {
+    let before = text.get(..at)?;
+    let before = before[..before.rfind('=')?].trim_end();
+    let begin = before.rfind(|c: char| !(c.is_alphanumeric() || "_-".contains(c))).map_or(0, |i| i + 1);
+    Some(&before[begin..]).filter(|key| !key.is_empty())
 }
 
 /// The line that sets the setting `path`, such as `shape.fan.radius`, in the table that line `from` belongs to;
@@ -80,17 +95,76 @@ pub(super) fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>)
     names.into_iter().map(|n| (far(n), n)).filter(near).min().map(|(_, n)| n)
 }
 
-/// Rewords ``unknown field `x`, expected one of `a`, `b` `` so that the most similar name comes first.
-fn reworded(message: &str) -> String {
-    let Some(rest) = message.strip_prefix("unknown field ").or(message.strip_prefix("unknown variant "))
-    else {
-        return message.to_owned();
+/// Rewords an error of serde in terms of TOML. `key` is the field that has the wrong value.
+///
+/// ``unknown field `x`, expected one of `a`, `b` `` becomes a sentence with the most similar name first.
+/// ``invalid type: string "x", expected f32`` becomes a sentence about the value that the field needs.
+fn reworded(message: &str, key: Option<&str>) -> String {
+    if let Some(rest) = message.strip_prefix("unknown field ").or(message.strip_prefix("unknown variant ")) {
+        let quoted: Vec<&str> = rest.split('`').skip(1).step_by(2).collect();
+        return match quoted.split_first() {
+            Some((wrong, known)) => unknown(wrong, known.iter().copied()),
+            None => message.to_owned(),
+        };
+    }
+    if let Some(name) = message.strip_prefix("missing field ") {
+        return format!("{name} is missing");
+    }
+    let field = key.map_or("the value".into(), |key| format!("`{key}`"));
+    if message == "wanted string or table" {
+        return format!("{field} needs a name in quotes");
+    }
+    if let Some(expected) = message.strip_prefix("expected ").filter(|_| key.is_some()) {
+        return format!("{field} needs {expected}");
+    }
+    let wrong = ["invalid type: ", "invalid value: ", "invalid length "].iter().find_map(|start| {
+        let (found, expected) = message.strip_prefix(start)?.split_once(", expected ")?;
+        Some((start.contains("length"), found, expected))
+    });
+    match wrong {
+        Some((true, count, expected)) => format!("{field} needs {}, not {count} values", needed(expected)),
+        Some((false, found, expected)) => format!("{field} needs {}, not {}", needed(expected), value(found)),
+        None => message.to_owned(),
+    }
+}
+
+/// Describes the type that serde expected.
+fn needed(expected: &str) -> String {
+    let text = match expected {
+        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number, 0 or more",
+        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
+        "f32" | "f64" => "a number, such as 1.5",
+        "a boolean" => "true or false",
+        "a string" | "string" | "path string" | "a borrowed string" => "text in quotes",
+        "a sequence" => "a list, such as [1.0, 2.0]",
+        "a map" => "a table, such as { name = 1.0 }",
+        "variant identifier" => "a name in quotes",
+        "a sequence of 2 f32 values" => "two numbers, such as [1.5, 0.0]",
+        "a sequence of 3 f32 values" => "three numbers, such as [1.5, 0.0, 0.0]",
+        "a sequence of 4 f32 values" => "four numbers, such as [1.5, 0.0, 0.0, 0.0]",
+        _ if expected.starts_with("struct ") => "a table, such as { name = 1.0 }",
+        _ if expected.starts_with("enum ") => "a name in quotes",
+        _ if expected.starts_with("a tuple of size ") || expected.starts_with("an array of length ") => {
+            let count = expected.rsplit(' ').next().unwrap_or_default();
+            return format!("a list of {count} values");
+        }
+        _ => expected,
     };
-    let quoted: Vec<&str> = rest.split('`').skip(1).step_by(2).collect();
-    let Some((wrong, known)) = quoted.split_first() else {
-        return message.to_owned();
-    };
-    unknown(wrong, known.iter().copied())
+    text.to_owned()
+}
+
+/// Describes the value that serde found.
+fn value(found: &str) -> String {
+    let quoted = |start: &str| Some(found.strip_prefix(start)?.trim_matches('`').to_owned());
+    match found {
+        "map" => "a table".into(),
+        "sequence" => "a list".into(),
+        _ => quoted("integer ")
+            .or_else(|| quoted("floating point "))
+            .or_else(|| quoted("boolean "))
+            .or_else(|| Some(format!("the text {}", found.strip_prefix("string ")?)))
+            .unwrap_or_else(|| found.to_owned()),
+    }
 }
 
 /// Says that `wrong` is not one of `names`.

@@ -37,6 +37,7 @@ pub fn all() -> Vec<Sample> {
         ("hair-even", written(&groom(4), "hair"), |b| hair::parse(b).map(drop)),
         ("tfx-4", written(&groom(4), "tfx"), |b| tfx::parse(b).map(drop)),
         ("tfx-3", tfx_3(), |b| tfx::parse(b).map(drop)),
+        ("tfx-2", tfx_2().into_bytes(), |b| tfx::parse(b).map(drop)),
         ("data", written(&uneven, "data"), |b| usc::parse(b).map(drop)),
         ("tfxbone", bones(), |b| tfxbone::parse(b).map(drop)),
         ("tfxmesh", skinned_mesh().into_bytes(), |b| tfxmesh::parse(b).map(drop)),
@@ -62,6 +63,15 @@ fn tfx_3() -> Vec<u8> {
     words[36] = 296;
     words.extend((0..18).map(|i| (i as f32).to_bits()));
     words.iter().flat_map(|w| w.to_le_bytes()).collect()
+}
+
+/// The text of a `.tfx` of version 2 with two strands of different lengths.
+pub fn tfx_2() -> String {
+    "version 2.0\nscale 1.0\nrotation 0 0 0\ntranslation 0 0 0\nbothEndsImmovable 0\nmaxNumVerticesInStrand 4\n\
+     numFollowHairsPerGuideHair 4\nmaxRadiusAroundGuideHair 1.5\nnumStrands 2\nis sorted 1\n\
+     strand 0 numVerts 4 texcoord 0.250000 000000\n0.0, 1.0, 0.5\n0.1, 1.1, 0.5\n0.2, 1.2, 0.5\n0.3, 1.3, 0.5\n\
+     strand 1 numVerts 3 texcoord 0.5 1\n-1 1 0\n-1 1.1 0\n-1 1.2 0\n"
+        .into()
 }
 
 fn bones() -> Vec<u8> {

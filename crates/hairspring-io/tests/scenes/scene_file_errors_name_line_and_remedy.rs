@@ -65,7 +65,10 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
             &["line 5", "1 to 64"],
         ),
         (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [1, nan]\n"), &["line 5", "above 0"]),
-        (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = 3\n"), &["line 4", "sequence"]),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = 3\n"),
+            &["line 5", "`mass_profile` needs a list"],
+        ),
         (
             "[[groom]]\nfile = \"hiar.data\"\n".into(),
             &["hiar.data was not found", "names it as the groom", "line 2"],
@@ -202,6 +205,76 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         println!("{message}");
         for part in parts {
             assert!(message.contains(part), "{text}\n gives\n{message}\nwhich does not contain {part:?}");
+        }
+        assert!(!message.contains('\n'), "more than one line: {message}");
+    }
+}
+
+#[test]
+fn values_of_the_wrong_type_are_described_in_toml() {
+    const GROOM: &str = "[[groom]]\nfile = \"hair.data\"\n";
+    const MATERIAL: &str = "material = \"a\"\n[material.a]\n";
+    let three = "three numbers, such as [1.5, 0.0, 0.0]";
+    for (text, parts) in [
+        ("[wind]\nvelocity = 1.5\n".into(), &["line 4", "`velocity` needs", three, "not 1.5"][..]),
+        (
+            "[wind]\nvelocity = \"fast\"\n".into(),
+            &["line 4", "`velocity` needs", three, "not the text \"fast\""],
+        ),
+        ("[wind]\nvelocity = [1, 0]\n".into(), &["line 4", "`velocity` needs", three]),
+        ("[wind]\nvelocity = [1, 0, \"x\"]\n".into(), &["line 4", "`velocity` needs a number"]),
+        ("[wind]\ngust = true\n".into(), &["line 4", "`gust` needs a number, such as 1.5, not true"]),
+        (
+            "[solver]\nsubsteps = 4.5\n".into(),
+            &["line 4", "`substeps` needs a whole number, 0 or more, not 4.5"],
+        ),
+        (
+            "[solver]\nsubsteps = -4\n".into(),
+            &["line 4", "`substeps` needs a whole number, 0 or more, not -4"],
+        ),
+        ("[solver]\nsubsteps = \"4\"\n".into(), &["line 4", "`substeps` needs a whole number"]),
+        ("[solver]\nsag_free = 1\n".into(), &["line 4", "`sag_free` needs true or false, not 1"]),
+        ("[volume]\nmethod = 3\n".into(), &["line 4", "`method` needs a name in quotes"]),
+        ("thicken = 3\n".into(), &["line 3", "`thicken` needs a table"]),
+        ("thicken = { copies = \"x\" }\n".into(), &["line 3", "`copies` needs a whole number"]),
+        (
+            "look.root_color = 3\n".into(),
+            &["line 3", "`root_color` needs three numbers from 0 to 1", "\"#a0522d\""],
+        ),
+        ("look.root_color = \"red\"\n".into(), &["line 3", "`root_color` needs", "not the text \"red\""]),
+        ("look.root_color = [1, 0]\n".into(), &["line 3", "`root_color` needs", "not 2 values"]),
+        ("look.dye = \"#12345\"\n".into(), &["line 3", "`dye` needs"]),
+        ("[ground]\ncolor = \"#a0522g\"\n".into(), &["line 4", "`color` needs"]),
+        (format!("{MATERIAL}friction = \"low\"\n"), &["line 5", "`friction` needs a number"]),
+        (
+            format!("{MATERIAL}bend = 1\nfriction = [1]\n"),
+            &["line 6", "`friction` needs a number, such as 1.5, not a list"],
+        ),
+        (format!("{MATERIAL}global_shape = {{ pull = \"x\" }}\n"), &["`pull` needs a number"]),
+        ("transform.position = 3\n".into(), &["line 3", "`position` needs", three]),
+        ("[[collider]]\nshape.sphere = { radius = 1 }\n".into(), &["line 4", "`center` is missing"]),
+        ("guides = 2.5\n".into(), &["line 3", "`guides` needs a number of guides above 0"]),
+        ("colors = \"lok\"\n".into(), &["line 3", "did you mean `look`?"]),
+        ("reverse = \"yes\"\n".into(), &["line 3", "`reverse` needs true or false"]),
+    ] {
+        let message = message(&format!("{GROOM}{text}"));
+        println!("{message}");
+        for part in parts {
+            assert!(message.contains(part), "{text}\n gives\n{message}\nwhich does not contain {part:?}");
+        }
+        for word in [
+            "f32",
+            "u32",
+            "i64",
+            "struct",
+            "sequence",
+            "integer",
+            "floating point",
+            "enum ",
+            "variant",
+            "map",
+        ] {
+            assert!(!message.contains(word), "{message}\nspeaks of {word}");
         }
         assert!(!message.contains('\n'), "more than one line: {message}");
     }

@@ -12,7 +12,10 @@ use hairspring::{
     settings::{Neighbours, Volume, VolumeMethod},
 };
 use hairspring_io::Loaded;
-use hairspring_scene::{Guides, Hand, Shape};
+use hairspring_scene::{
+    Guides, Hand, Shape,
+    stage::{FrameRate, Stage},
+};
 use hairspring_test::data;
 use std::fs;
 
@@ -72,7 +75,8 @@ fn scene_files_give_the_scene_they_describe() {
     "#;
     let Loaded { value: scene, notes, .. } = read(folder.path(), text).unwrap();
     assert_eq!((scene.name.as_str(), scene.gravity), ("scene", Vec3::new(0.0, -1.6, 0.0)));
-    assert!(notes.is_empty(), "{notes:?}");
+    // The placement puts the hair beside the body.
+    assert!(notes.len() == 1 && notes[0].contains("from the skin"), "{notes:?}");
     let body = scene.body.as_ref().unwrap();
     assert_eq!((body.mesh.triangles.len(), body.mesh.positions.len()), (1, 3));
     assert_eq!(body.mesh.parts[0].color, Vec3::new(0.1, 0.2, 0.3));
@@ -345,4 +349,40 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
         let message = wrong(more);
         assert!(message.contains(part), "{more}: {message}");
     }
+}
+
+#[test]
+fn a_built_in_head_without_strands_is_bald() {
+    let folder = folder();
+    let scene = |text: &str| read(folder.path(), text).unwrap().value;
+    let bald = scene("[builtin]\nstrands = 0\nmotion = false\n[solver]\ncollide_body = false\n");
+    assert_eq!(bald.grooms[0].groom.strand_count(), 0);
+    assert!(bald.grooms[1].groom.strand_count() > 0, "the brows are missing");
+    let mut stage = Stage::new(bald).unwrap();
+    stage.step_frame(FrameRate::new(60, 1).unwrap());
+    assert!(message("[builtin]\nstrands = -1\n").contains("`strands` needs a whole number, 0 or more"));
+}
+
+#[test]
+fn colors_are_linear_numbers_or_srgb_in_hexadecimal() {
+    let folder = folder();
+    let sienna = Vec3::new(0.3515, 0.0844, 0.0262);
+    let text = r##"
+        [body]
+        file = "head.obj"
+        color = "#a0522d"
+        [[groom]]
+        file = "hair.data"
+        look = { root_color = "#A0522D", tip_color = [0.1, 0.2, 0.3], dye = "#fff" }
+        [ground]
+        color = "#a0522d"
+    "##;
+    let scene = read(folder.path(), text).unwrap().value;
+    let look = &scene.grooms[0].look;
+    for color in [look.root_color, scene.ground.color.unwrap(), scene.body.unwrap().mesh.parts[0].color] {
+        assert!(color.distance(sienna) < 1e-3, "{color}");
+    }
+    assert_eq!((look.tip_color, look.dye), (Vec3::new(0.1, 0.2, 0.3), Vec3::ONE));
+    let scene = read(folder.path(), "[builtin]\nstrands = 10\nlook = { tip_color = \"#a0522d\" }\n").unwrap();
+    assert!(scene.value.grooms[0].look.tip_color.distance(sienna) < 1e-3);
 }

@@ -4,6 +4,7 @@
 use super::{Body, Clip, Joint, Trs, cuts};
 use crate::{math::RigidTransform, settings::Solver};
 use glam::{Affine3A, Quat, Vec3};
+use std::collections::BTreeMap;
 
 /// How much of the head's translation [`head_motion`] keeps.
 ///
@@ -44,7 +45,8 @@ impl Default for HeadMotion {
 }
 
 /// Returns the motion of joint `name` relative to its rest frame, as a clip of one joint that drives a rigid
-/// body ([`Body::rigid`]). Returns `None` if there is no such joint or the clip has no frames.
+/// body ([`Body::rigid`]). Returns `None` if there is no such joint or the clip has no frames. As in
+/// [`retarget`], a prefix of the joint's name may be omitted.
 ///
 /// The person's heading in the rest frame, computed from the joints named left and right, is rotated to that
 /// of the bust. A nod therefore stays a nod whichever way the captured person faces.
@@ -59,7 +61,7 @@ impl Default for HeadMotion {
 /// ```
 pub fn head_motion(joints: &[Joint], clip: &Clip, name: &str, options: &HeadMotion) -> Option<Clip> {
     let skeleton = Body { joints: joints.to_vec(), ..Body::default() };
-    let head = skeleton.joint(name)?;
+    let head = named(joints, name)?;
     let frames = clip.frame_count();
     let rest_frame = options.rest_frame.min(frames.checked_sub(1)?);
     let world = |f: usize| skeleton.world(&clip.samples[f * clip.joint_count..][..clip.joint_count]);
@@ -121,12 +123,12 @@ fn stay(shifts: &mut [Vec3], rate: f64, rest_frame: usize, cuts: &[(usize, usize
 /// the mean of the right-to-left pairs of joints. Returns 0 if there are no such pairs.
 fn heading(joints: &[Joint], world: &[Affine3A]) -> f32 {
     let mut left = Vec3::ZERO;
-    for (j, joint) in joints.iter().enumerate() {
-        let name = key(&joint.name);
+    let names = keys(joints);
+    for (j, name) in names.iter().enumerate() {
         let Some(rest) = name.strip_prefix("left") else {
             continue;
         };
-        let other = joints.iter().position(|o| key(&o.name).strip_prefix("right") == Some(rest));
+        let other = names.iter().position(|o| o.strip_prefix("right") == Some(rest));
         if let Some(o) = other {
             left += Vec3::from(world[j].translation - world[o].translation);
         }
@@ -148,15 +150,25 @@ pub struct Retargeted {
     pub matched: usize,
     /// Names of the motion's joints that the body does not have.
     pub unmatched: Vec<String>,
+    /// Scale of the body's translation relative to the motion's.
+    pub scale: f32,
+    /// Whether both rigs have a joint near the floor, so that the motion also gives the body's height above
+    /// it. Otherwise the body starts at its own place.
+    pub on_floor: bool,
 }
 
-/// Retargets a clip to the joints of `body` that have the same names. Case, punctuation and a prefix before a
-/// colon are ignored. Returns `None` if no names agree or the clip has no frames.
+/// Retargets a clip to the joints of `body` that have the same names. Case, punctuation, a prefix before a
+/// colon or a bar, and a prefix that the joints of a rig share (`mixamorig_`, `Bip01_`) are ignored. Returns
+/// `None` if no names agree or the clip has no frames.
 ///
 /// Rotations are transferred in world space: a bone of the body points where the motion's bone points, even
 /// if the rest poses differ (arms down or out). The spine up to the head keeps the curve of the body's rest
-/// pose. The root's translation is scaled by the ratio of the hip heights. It starts at the body's own place,
-/// with the lowest joint on the same floor.
+/// pose.
+///
+/// The topmost joint that moves through the world carries the body. If both rigs have a joint near the floor
+/// (a foot), its translation is scaled by the ratio of the hip heights, and the feet are on the same floor.
+/// Otherwise it starts at the body's own place, and its translation is scaled by the ratio of the lengths of
+/// the bones that both rigs have.
 ///
 /// ```
 /// use hairspring::body::{Body, Clip, Joint, Mesh, Trs, retarget};
@@ -168,8 +180,7 @@ pub struct Retargeted {
 /// ```
 pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted> {
     let source = Body { joints: joints.to_vec(), ..Body::default() };
-    let map: Vec<Option<usize>> =
-        body.joints.iter().map(|j| joints.iter().position(|s| key(&s.name) == key(&j.name))).collect();
+    let map = matches(joints, &body.joints);
     let matched = map.iter().flatten().count();
     if matched == 0 || clip.frame_count() == 0 {
         return None;
@@ -177,16 +188,18 @@ pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted
     let target_rest = body.world(&body.rest_pose());
     let source_rest = source.world(&source.rest_pose());
     let align = alignments(body, &map, &target_rest, &source_rest);
-    // The first driven joint moves the whole body.
-    let root = map.iter().position(Option::is_some)?;
+    let root = carrier(clip, body, &map, &target_rest)?;
     let source_root = map[root]?;
     let frame = |f: usize| source.world(&clip.samples[f * clip.joint_count..][..clip.joint_count]);
     let first = frame(0);
-    let height = |world: &[Affine3A], j: usize| world[j].translation.y - lowest(world);
-    let ratio = height(&target_rest, root) / height(&source_rest, source_root);
-    let ratio = if ratio.is_finite() && ratio > 0.0 { ratio } else { 1.0 };
-    let origin = Vec3::from(first[source_root].translation).with_y(lowest(&first));
-    let place = Vec3::from(target_rest[root].translation).with_y(lowest(&target_rest));
+    let floors = hip_ratio(body, root, &map, &target_rest, &source_rest);
+    let ratio = floors.unwrap_or_else(|| bone_ratio(body, &map, &target_rest, &source_rest));
+    let (mut origin, mut place) =
+        (Vec3::from(first[source_root].translation), Vec3::from(target_rest[root].translation));
+    if floors.is_some() {
+        origin.y = lowest(map.iter().flatten().map(|s| &first[*s]));
+        place.y = lowest(driven(&map).map(|j| &target_rest[j]));
+    }
     let rest_pose = body.rest_pose();
     let mut samples = Vec::with_capacity(clip.frame_count() * body.joints.len());
     for f in 0..clip.frame_count() {
@@ -211,7 +224,83 @@ pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted
     let used = |s: usize| map.contains(&Some(s));
     let unmatched = (0..joints.len()).filter(|s| !used(*s)).map(|s| joints[s].name.clone()).collect();
     let clip = Clip { name: clip.name.clone(), rate: clip.rate, joint_count: body.joints.len(), samples };
-    Some(Retargeted { clip, matched, unmatched })
+    Some(Retargeted { clip, matched, unmatched, scale: ratio, on_floor: floors.is_some() })
+}
+
+/// Joints of the body that the motion drives.
+fn driven(map: &[Option<usize>]) -> impl Iterator<Item = usize> + '_ {
+    (0..map.len()).filter(|j| map[*j].is_some())
+}
+
+/// Returns the joint of the body that carries it through the world: the first driven joint whose translation
+/// relative to its parent changes during the motion, or the first driven joint if there is none. A rig may
+/// have a root on the floor that never moves, above hips that do.
+fn carrier(clip: &Clip, body: &Body, map: &[Option<usize>], target: &[Affine3A]) -> Option<usize> {
+    let first = driven(map).next()?;
+    // A change by less than a thousandth of the body is rounding, or a bone that the capture stretches.
+    let size = driven(map)
+        .map(|j| Vec3::from(target[j].translation - target[first].translation).length())
+        .fold(0.0, f32::max);
+    let moves = |j: &usize| {
+        let Some(s) = map[*j] else { return false };
+        let at = |f: usize| clip.samples[f * clip.joint_count + s].translation;
+        (1..clip.frame_count()).any(|f| at(f).distance(at(0)) > 1e-3 * size.max(1e-3))
+    };
+    // A joint carries the whole body if most of the driven joints are at or below it.
+    let mut at_or_below: Vec<usize> = map.iter().map(|s| usize::from(s.is_some())).collect();
+    for j in (0..map.len()).rev() {
+        if let Some(parent) = body.joints[j].parent {
+            at_or_below[parent as usize] += at_or_below[j];
+        }
+    }
+    let all = map.iter().flatten().count();
+    Some(driven(map).filter(|j| at_or_below[*j] * 2 > all).find(moves).unwrap_or(first))
+}
+
+/// Returns the ratio of the hip heights, if both rigs have a joint near the floor: a driven joint below the
+/// root by at least a fifth of the driven joints' extent.
+fn hip_ratio(
+    body: &Body,
+    root: usize,
+    map: &[Option<usize>],
+    target: &[Affine3A],
+    source: &[Affine3A],
+) -> Option<f32> {
+    let below = |mut j: usize| {
+        while j != root {
+            j = body.joints[j].parent? as usize;
+        }
+        Some(())
+    };
+    let drop = |world: &[Affine3A], of: &dyn Fn(usize) -> Option<usize>| -> Option<f32> {
+        let height = |j: usize| Some(world[of(j)?].translation.y);
+        let heights = || driven(map).filter(|j| below(*j).is_some()).filter_map(height);
+        let (low, high) =
+            heights().fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+        let drop = height(root)? - low;
+        (drop > 0.2 * (high - low) && drop > 1e-6).then_some(drop)
+    };
+    Some(drop(target, &Some)? / drop(source, &|j| map[j])?)
+}
+
+/// Returns the ratio of the lengths of the bones that both rigs have, as their median; 1 if there are none.
+fn bone_ratio(body: &Body, map: &[Option<usize>], target: &[Affine3A], source: &[Affine3A]) -> f32 {
+    let mut ratios: Vec<f32> = driven(map)
+        .filter_map(|j| {
+            let mut above = body.joints[j].parent;
+            while let Some(a) = above.filter(|a| map[*a as usize].is_none()) {
+                above = body.joints[a as usize].parent;
+            }
+            let a = above? as usize;
+            let length = |world: &[Affine3A], a: usize, b: usize| {
+                Vec3::from(world[a].translation - world[b].translation).length()
+            };
+            let (ours, theirs) = (length(target, j, a), length(source, map[j]?, map[a]?));
+            (ours > 1e-6 && theirs > 1e-6).then_some(ours / theirs)
+        })
+        .collect();
+    ratios.sort_by(f32::total_cmp);
+    ratios.get(ratios.len() / 2).copied().filter(|r| r.is_finite()).unwrap_or(1.0)
 }
 
 /// Returns the world-space rotation from each target bone's rest direction to that of the source bone.
@@ -220,7 +309,7 @@ pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted
 /// its parent. Joints of the spine are not rotated.
 fn alignments(body: &Body, map: &[Option<usize>], target: &[Affine3A], source: &[Affine3A]) -> Vec<Quat> {
     let mut spine = vec![false; map.len()];
-    let mut at = body.joint("head").map(|j| j as u32);
+    let mut at = named(&body.joints, "head").map(|j| j as u32);
     while let Some(j) = at {
         spine[j as usize] = true;
         at = body.joints[j as usize].parent;
@@ -241,10 +330,75 @@ fn alignments(body: &Body, map: &[Option<usize>], target: &[Affine3A], source: &
     align
 }
 
-/// Normalizes a joint name for comparison: lowercase letters and digits after the last colon.
+/// Prefixes that tools put before the names of joints.
+const PREFIXES: [&str; 6] = ["mixamorig", "armature", "valvebiped", "biped", "bip", "character"];
+
+/// Returns the joint of the motion for each joint of the body. Whole names are compared first, then names
+/// without the prefix that each rig shares.
+fn matches(joints: &[Joint], body: &[Joint]) -> Vec<Option<usize>> {
+    let names = [keys(joints), bare_keys(joints)];
+    let body_names = [keys(body), bare_keys(body)];
+    let find = |ours: &str, theirs: &[String]| theirs.iter().position(|other| other == ours);
+    (0..body.len())
+        .map(|j| {
+            let [whole, bare] = [&body_names[0][j], &body_names[1][j]];
+            let of = |ours, theirs: &[String]| find(ours, theirs);
+            of(whole, &names[0])
+                .or_else(|| of(bare, &names[1]))
+                .or_else(|| of(bare, &names[0]))
+                .or_else(|| of(whole, &names[1]))
+        })
+        .collect()
+}
+
+/// Normalizes the names of a rig's joints.
+fn keys(joints: &[Joint]) -> Vec<String> {
+    joints.iter().map(|j| key(&j.name)).collect()
+}
+
+/// Normalizes the names of a rig's joints without a first word that most of them share (`CC_Base_Head`). Only
+/// words before a separator count, and only if at least three joints and two thirds of the rig have them.
+fn bare_keys(joints: &[Joint]) -> Vec<String> {
+    let separated = |c: char| !c.is_alphanumeric();
+    let mut names: Vec<&str> = joints.iter().map(|j| own_name(&j.name)).collect();
+    for _ in 0..3 {
+        let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+        for (word, _) in names.iter().filter_map(|name| name.split_once(separated)) {
+            *counts.entry(word.to_lowercase()).or_default() += 1;
+        }
+        let Some((shared, count)) = counts.into_iter().max_by_key(|(_, count)| *count) else { break };
+        if count < 3 || count * 3 < joints.len() * 2 || ["left", "right", "l", "r"].contains(&&*shared) {
+            break;
+        }
+        for name in &mut names {
+            if let Some((word, rest)) = name.split_once(separated)
+                && word.to_lowercase() == shared
+            {
+                *name = rest;
+            }
+        }
+    }
+    names.into_iter().map(key).collect()
+}
+
+/// Returns the part of a name after its namespaces (`mixamorig:Hips`, `Armature|Hips`).
+fn own_name(name: &str) -> &str {
+    name.rsplit([':', '|']).next().unwrap_or(name)
+}
+
+/// Normalizes the name of one joint.
 fn key(name: &str) -> String {
-    let own = name.rsplit(':').next().unwrap_or(name);
-    own.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
+    let all: String =
+        own_name(name).chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+    let mut own = all.as_str();
+    while let Some(rest) = PREFIXES.iter().find_map(|prefix| own.strip_prefix(prefix)) {
+        let rest = rest.trim_start_matches(|c: char| c.is_ascii_digit());
+        if rest.is_empty() {
+            break;
+        }
+        own = rest;
+    }
+    own.to_owned()
 }
 
 /// Returns the rotation and position of a joint, without its scale.
@@ -253,9 +407,17 @@ fn split(world: &Affine3A) -> (Quat, Vec3) {
     (if rotation.is_finite() { rotation } else { Quat::IDENTITY }, translation)
 }
 
-/// Returns the height of the lowest joint [m].
-fn lowest(world: &[Affine3A]) -> f32 {
-    world.iter().map(|w| w.translation.y).fold(f32::INFINITY, f32::min)
+/// Returns the height of the lowest of these joints [m].
+fn lowest<'a>(world: impl Iterator<Item = &'a Affine3A>) -> f32 {
+    world.map(|w| w.translation.y).fold(f32::INFINITY, f32::min)
+}
+
+/// Returns the joint of a rig with this name: exactly, or with prefixes ignored.
+fn named(joints: &[Joint], name: &str) -> Option<usize> {
+    let exact = joints.iter().position(|j| j.name.eq_ignore_ascii_case(name));
+    let wanted = key(name);
+    let by = |keys: Vec<String>| keys.iter().position(|k| *k == wanted);
+    exact.or_else(|| by(keys(joints))).or_else(|| by(bare_keys(joints)))
 }
 
 #[cfg(test)]

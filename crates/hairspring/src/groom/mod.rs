@@ -107,6 +107,22 @@ pub struct GuideWeights {
 }
 
 impl Groom {
+    /// Reverses the points of every strand, with their radii and colors, so that the root is at the other end.
+    /// Removes the bindings of the roots.
+    pub fn reverse(&mut self) {
+        for s in 0..self.strand_count() {
+            let run = self.range(s);
+            self.points[run.clone()].reverse();
+            if let Some(radii) = self.radii.get_mut(run.clone()) {
+                radii.reverse();
+            }
+            if let Some(colors) = self.colors.get_mut(run) {
+                colors.reverse();
+            }
+        }
+        self.roots.clear();
+    }
+
     /// Creates a groom from strands, each a list of points from root to tip [m], all with the same radius
     /// [m].
     pub fn from_strands<S: AsRef<[Vec3]>>(strands: impl IntoIterator<Item = S>, radius: f32) -> Self {

@@ -48,6 +48,7 @@ macro_rules! define_settings {
         pub struct $name:ident {
             $(
                 $(#[doc = $doc:literal])+
+                $(#[serde($($serde:tt)*)])?
                 $field:ident : $ty:ty = $default:expr, $unit:tt, {$($range:tt)*}
                 $(, default $text:literal)? $(, when $when:expr)?;
             )*
@@ -67,6 +68,7 @@ macro_rules! define_settings {
                     "Range: ", $crate::define_settings!(@text $unit {$($range)*}),
                     ". Default: `", stringify!($default), "`."
                 )]
+                $(#[cfg_attr(feature = "serde", serde($($serde)*))])?
                 pub $field: $ty,
             )*
         }
