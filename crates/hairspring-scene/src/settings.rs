@@ -75,7 +75,7 @@ define_settings! {
             points: Vec<Vec3>, ["m"], {text "4 to 2048 that span a volume"}, default "the vertices of `file`";
             /// A mesh file. The scene reader replaces `points` with its vertices; this crate does not open it.
             #[serde(default)]
-            file: Option<PathBuf>, "none", {text "a mesh: `.glb`, `.gltf`, `.obj` or `.tfxmesh`"}, default "the `points`";
+            file: Option<PathBuf>, "none", {text "a mesh: `.glb`, `.gltf`, `.vrm`, `.obj` or `.tfxmesh`"}, default "the `points`";
             /// Size of one unit of `file`.
             #[serde(default)]
             scale: Option<f32>, ["m"], {above 0}, default "from the format, or guessed and reported";

@@ -118,7 +118,7 @@ define_settings! {
     #[derive(PartialEq)]
     file struct BodyFile {
         /// File of the mesh.
-        file: FileName, "none", {text "`.glb`, `.gltf`, `.obj`, `.tfxmesh`"};
+        file: FileName, "none", {text "`.glb`, `.gltf`, `.vrm`, `.obj`, `.tfxmesh`"};
         /// Size of one unit of the file.
         scale: Option<f32>, ["m"], {above 0}, default "from the format, or guessed and reported";
         /// The axis that points up.

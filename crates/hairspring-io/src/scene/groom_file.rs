@@ -15,7 +15,7 @@ define_settings! {
     /// One `[[groom]]`.
     file struct GroomFile {
         /// File of the strands.
-        file: Option<FileName>, "none", {text "`.hair`, `.tfx`, `.data`"}, default "required, or `grow`";
+        file: Option<FileName>, "none", {text "`.hair`, `.tfx`, `.data`, `.obj`"}, default "required, or `grow`";
         /// Hair grown from the body, used instead of a file.
         grow: Option<Spanned<GrowFile>>, "none", {table};
         /// Follow hairs added around each strand.

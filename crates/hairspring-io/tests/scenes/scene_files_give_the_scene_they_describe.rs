@@ -329,7 +329,7 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
     for (more, part) in [
         (
             "[[collider]]\nshape.hull = { points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]] }",
-            "line 7: `shape.hull` must be given `points` that span a volume",
+            "line 7: `shape.hull` must be given at most 2048 `points` that span a volume",
         ),
         ("[[collider]]\nshape.hull = {}", "line 7: `shape.hull` must be"),
         ("[[collider]]\nshape.hull = { file = \"head.obj\", scale = 1 }", "head.obj span no volume"),
