@@ -196,7 +196,7 @@ fn a_scene_can_extend_the_built_in_one() {
     assert!(
         wrong("style = \"wavvy\"").contains("line 2: the style `wavvy` is unknown; did you mean `wavy`?")
     );
-    assert!(wrong("strands = 0").contains("line 2: `strands` must be 1 to 10000000"));
+    assert!(wrong("strands = 10000001").contains("line 2: `strands` must be 0 to 10000000"));
     assert!(wrong("guides = \"file\"").contains("line 2: `guides` must be a number above 0 or \"all\""));
     assert!(wrong("material = \"wavvy\"").contains("line 2: the material `wavvy`"));
     assert!(wrong("[body]\nfile = \"head.obj\"").contains("has its own body"));
