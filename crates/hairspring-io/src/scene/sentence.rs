@@ -37,8 +37,8 @@ pub(super) fn problem_in_table(
 fn key_of(text: &str, at: usize) -> Option<&str> {
     let before = text.get(..at)?;
     let before = before[..before.rfind('=')?].trim_end();
-    let begin = before.rfind(|c: char| !(c.is_alphanumeric() || "_-".contains(c))).map_or(0, |i| i + 1);
-    Some(&before[begin..]).filter(|key| !key.is_empty())
+    let key = before.rsplit(|c: char| !(c.is_alphanumeric() || "_-".contains(c))).next()?;
+    Some(key).filter(|key| !key.is_empty())
 }
 
 /// The line that sets the setting `path`, such as `shape.fan.radius`, in the table that line `from` belongs to;
