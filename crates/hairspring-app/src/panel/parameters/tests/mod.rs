@@ -250,7 +250,7 @@ fn a_tooltip_names_range_unit_and_default() {
         ("solver.segment_contacts", "on or off; default on\n"),
         ("style", "straight, wavy, curly, coily, short-fur; default wavy\n"),
         ("look.melanin", "0 to 1; default none\n"),
-        ("strands", "1 to 10000000; default 100000\n"),
+        ("strands", "0 to 10000000; default 100000\n"),
     ] {
         assert!(of(name).contains(line), "{}", of(name));
     }
