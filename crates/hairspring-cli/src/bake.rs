@@ -48,9 +48,9 @@ pub struct Options {
     #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
     fps: FrameRate,
 
-    /// Skip frames that an earlier run has finished. They are still simulated, so that the result is
-    /// bit-identical to an uninterrupted run. The manifest beside the frames (NAME.bake.hair.json) says what
-    /// they were made from; a run with another scene, input file, option, version or instruction set is
+    /// Skip frames that an earlier run has finished. They are still simulated, so that the result has
+    /// the same bits as an uninterrupted run. The manifest next to the frames (NAME.bake.hair.json) records
+    /// the inputs; a run with another scene, input file, option, version or instruction set is
     /// refused. Finished frames are checked by length and checksum
     #[arg(long)]
     resume: bool,

@@ -1,6 +1,6 @@
-//! Every parameter of a scene file that is a single number, switch, choice, color or direction, with what is
-//! the panel's own: group, order, label and control. Unit, range, default, description and the condition
-//! under which it has an effect are those of its definition. Fields of list entries (colliders, tools, wind
+//! The parameters of a scene file that are a single number, switch, choice, color or direction. For each, this
+//! table gives the group, order, label and control in the panel. Unit, range, default, description and the
+//! condition under which it has an effect are those of its definition. Fields of list entries (colliders, tools, wind
 //! sources, charged bodies, keys) are in `field`.
 
 mod table;

@@ -132,7 +132,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     for (&integrator, played) in integrators.iter().zip(played) {
         let swung = swing::swing(&swinging, integrator, setting.substeps, seconds);
         let longest = swing::longest_step(&stepping, integrator);
-        progress.step(|| format!("{}: longest stable step {}", integrator.name(), longest.told()));
+        progress.step(|| format!("{}: longest stable step {}", integrator.name(), longest.label()));
         trials.push(Trial { integrator, played, swung, longest });
     }
     drop(progress);
@@ -246,7 +246,7 @@ fn row(t: &Trial) -> [String; 8] {
         percent(t.played.stretch_max),
         t.swung.drift.map_or("blew up".into(), |d| format!("{:+.0} %", d * 100.0)),
         format!("{:.1}", t.played.ns),
-        t.longest.told(),
+        t.longest.label(),
         t.points_in_real_time().map_or("none".into(), |n| crate::totals::grouped(two_digits(n) as usize)),
     ]
 }

@@ -75,7 +75,7 @@ impl LongestStep {
     }
 
     /// Describes the step in words.
-    pub fn told(self) -> String {
+    pub fn label(self) -> String {
         match self {
             Self::All => format!("{} or more", duration(LONGEST)),
             Self::Found(h) => duration(h),

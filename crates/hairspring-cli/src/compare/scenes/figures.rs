@@ -1,4 +1,4 @@
-//! What is measured of each side, and of both together.
+//! Figures of each of the two scenes, and figures that compare them.
 
 use glam::Vec3;
 use hairspring_scene::stage::{FrameReport, Stage};
