@@ -5,7 +5,7 @@ use hairspring::{
     material::{Material, PRESETS},
 };
 use hairspring_scene::{
-    Guides, Scene, SceneGroom, SceneSheet,
+    Guides, InitialContact, Scene, SceneGroom, SceneSheet,
     builtin::{BuiltinOptions, Style},
 };
 
@@ -70,8 +70,9 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
         all.insert("body".into(), picked(body, &["color", "roughness"]).into());
     }
     let sheets = entries(said, "sheet").iter().map(|sheet| {
-        let mut table = picked(sheet, &["joint", "thickness"]);
+        let mut table = picked(sheet, &["joint", "thickness", "initial"]);
         table.entry("thickness").or_insert(value(&SceneSheet::THICKNESS));
+        table.entry("initial").or_insert(value(&InitialContact::default()));
         toml::Value::Table(table)
     });
     all.insert("sheet".into(), toml::Value::Array(sheets.collect()));

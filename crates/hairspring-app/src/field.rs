@@ -16,6 +16,8 @@ pub enum Kind {
     Number,
     /// On or off.
     Switch,
+    /// One of the words of its definition.
+    Word,
     /// The name of a joint of the body, or none.
     Joint,
     /// An optional number, with its initial value.
@@ -78,6 +80,7 @@ const ALL: &[Field] = fields! {
     "charge", "Charge", Kind::Number;
     "solid", "Solid", Kind::Switch;
     "joint", "Joint", Kind::Joint;
+    "initial", "Initial contact", Kind::Word, "A change restarts the scene.";
     "pull", "Pull", Kind::Number;
     "damping", "Damping", Kind::Number;
     "grip", "Grip", Kind::Number;
@@ -128,6 +131,11 @@ pub fn unit(key: &Key) -> &'static str {
     definition(key).map_or("", unit_of)
 }
 
+/// The words that the field at `key` accepts.
+pub fn words(key: &Key) -> &'static [&'static str] {
+    definition(key).map_or(&[], |definition| definition.words)
+}
+
 /// Tooltip of a field at `key`: description, accepted values and default.
 pub fn tip(field: &Field, key: &Key) -> String {
     let Some(definition) = definition(key) else { return field.label.into() };
@@ -166,6 +174,8 @@ mod tests {
     fn units_and_descriptions_are_those_of_the_definitions() {
         let key = |text: &str| text.parse::<Key>().unwrap();
         assert_eq!(unit(&key("hand[0].tool.grab.pull")), "Hz");
+        let lists = ["collider[0].initial", "sheet[1].initial"];
+        assert!(lists.iter().all(|name| words(&key(name)) == ["keep", "push"]));
         assert_eq!(unit(&key("collider[1].shape.box.rotation")), "°");
         assert_eq!(column(&key("hand[0].path"), "position").0, "m");
         assert_eq!(column(&key("charged[0].path"), "time").0, "s");

@@ -95,6 +95,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     let mut stage = Stage::new(scene)?;
     console.note_all(stage.thin_mesh());
+    console.note_all(stage.starts_inside());
     let mut sheaf = Sheaf::new(&stage, console);
     interrupt::finish_current("the current frame");
     if let Some(manifest) = &mut manifest {

@@ -252,6 +252,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "ms_per_frame_fastest": fastest,
             "head": options.head,
             "wind_m_s": options.wind,
+            "started_inside_points": measure.started_inside_points,
+            "started_inside_depth_m": measure.started_inside_depth,
             "inside_segments": measure.inside_segments,
             "deep_segments": measure.deep_segments,
             "segment_depth_m": measure.segment_depth,
@@ -283,13 +285,14 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         stretch_ever * 1e2
     ));
     say(format_args!(
-        "contact  {} points inside at the end, at most {:.4} mm deep; {:.4} mm over all frames",
+        "contact  {} points inside at the end, at most {:.4} mm deep; {:.4} mm over all frames; {} of them started inside",
         measure.inside_points,
-        measure.max_depth * 1e3,
-        depth_ever * 1e3
+        measure.depth_inside() * 1e3,
+        depth_ever * 1e3,
+        measure.started_inside_points
     ));
     say(format_args!(
-        "         {} segments inside at the end, {} of them deeper than 1 mm, at most {:.4} mm deep; {:.4} mm over all frames",
+        "         {} segments deeper than they started at the end, {} of them by more than 1 mm, at most {:.4} mm deep; {:.4} mm over all frames",
         measure.inside_segments,
         measure.deep_segments,
         measure.segment_depth * 1e3,

@@ -158,6 +158,7 @@ pub fn shoot(
 ) -> Result<(Stage, Totals, Ending), Fault> {
     let mut stage = Stage::new(scene)?;
     console.note_all(stage.thin_mesh());
+    console.note_all(stage.starts_inside());
     let mut studio = Studio::new(view, &mut stage)?;
     if studio.width_scale() != 1.0 {
         console.note(format_args!(

@@ -158,11 +158,18 @@ impl Totals {
         say(format_args!(
             "contact  {} points inside at the end, at most {:.3} mm deep; {} segments deeper than 1 mm, at most {:.3} mm deep ({:.3} mm in the meshes)",
             grouped(contact.inside_points),
-            contact.max_depth * 1e3,
+            contact.depth_inside() * 1e3,
             grouped(contact.deep_segments),
             contact.segment_depth * 1e3,
             contact.surface_depth * 1e3
         ));
+        if contact.started_inside_points > 0 {
+            say(format_args!(
+                "         {} of these points started inside and are no deeper, at most {:.3} mm deep",
+                grouped(contact.started_inside_points),
+                contact.started_inside_depth * 1e3
+            ));
+        }
         if contact.held_segments > 0 {
             say(format_args!(
                 "         {} more segments start inside, held there by the root, at most {:.3} mm deep",
@@ -201,6 +208,8 @@ impl Totals {
             "reset_strands": self.reset_strands,
             "inside_points": contact.inside_points,
             "max_depth_m": contact.max_depth,
+            "started_inside_points": contact.started_inside_points,
+            "started_inside_depth_m": contact.started_inside_depth,
             "inside_segments": contact.inside_segments,
             "deep_segments": contact.deep_segments,
             "segment_depth_m": contact.segment_depth,

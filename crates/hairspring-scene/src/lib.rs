@@ -15,7 +15,7 @@ pub use color::{color_from_hex, deserialize_color, deserialize_optional_color};
 pub use ground::Ground;
 pub use hand::Hand;
 pub use look::{HairColor, HairLook};
-pub use settings::{Collider, Guides, Shape};
+pub use settings::{Collider, Guides, InitialContact, Shape};
 
 use glam::Vec3;
 use hairspring::{
@@ -50,6 +50,8 @@ pub struct SceneSheet {
     /// Distance that hair keeps from it, on both sides [m], above 0. Scene files default to
     /// [`SceneSheet::THICKNESS`].
     pub thickness: f32,
+    /// What happens to hair that passes through it before the scene begins.
+    pub initial: InitialContact,
 }
 
 impl SceneSheet {
@@ -186,7 +188,10 @@ mod tests {
         let scene = Scene { sheets: vec![sheet], ..Scene::default() };
         assert_eq!(error(scene), "sheet 0: `thickness` must be above 0 [m]");
         let shape = Shape::Sphere { center: Vec3::ZERO, radius: -1.0 };
-        let scene = Scene { colliders: vec![Collider { joint: None, shape }], ..Scene::default() };
+        let scene = Scene {
+            colliders: vec![Collider { joint: None, initial: InitialContact::Keep, shape }],
+            ..Scene::default()
+        };
         assert_eq!(error(scene), "collider 0: `shape.sphere.radius` must be above 0 [m]");
         assert_eq!(Scene::default().validate(), Ok(()));
     }

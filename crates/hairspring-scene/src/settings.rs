@@ -20,12 +20,28 @@ pub enum Guides {
 }
 
 define_settings! {
+    /// What happens to hair that is authored inside a collider.
+    choice InitialContact {
+        /// Hair may stay as deep as it is authored. The collider never pushes it out.
+        #[default]
+        Keep = "keep",
+        /// The collider pushes hair out before the scene begins. A shape grows to its size inside the hair. A sheet
+        /// closes in on the hair from outside, so that hair that passed through it lies under it.
+        Push = "push",
+    }
+}
+
+define_settings! {
     /// A simple shape that hair collides with.
     #[derive(Clone, Debug, PartialEq)]
     entry struct Collider {
         /// Name of the body joint that moves the collider.
         #[serde(default)]
         joint: Option<String>, "none", {text "the name of a joint of the body"}, default "the body's first";
+        /// What happens to hair that is inside the collider before the scene begins. `keep`: it may stay as deep as it
+        /// is. `push`: it is pushed out in a pre-roll of two seconds, or of `solver.preroll` if that is longer.
+        #[serde(default)]
+        initial: InitialContact = InitialContact::Keep, "none", {words};
         /// The shape, in the space of the body's rest pose [m].
         shape: Shape, "none", {table};
     }
@@ -86,6 +102,36 @@ define_settings! {
 impl Shape {
     /// Maximum number of points of a hull: the cost of making it grows with the square of their number.
     pub const MAX_POINTS: usize = 2048;
+
+    /// Returns the shape with its surface moved inward by `depth` [m], 0 or more. If the shape is thinner than that,
+    /// almost nothing is left of it.
+    pub fn shrunk(&self, depth: f32) -> Self {
+        let rest = |size: f32, depth: f32| (size - depth).max(1e-6 * size);
+        match *self {
+            Self::Sphere { center, radius } => Self::Sphere { center, radius: rest(radius, depth) },
+            Self::Capsule { a, b, radius } => Self::Capsule { a, b, radius: rest(radius, depth) },
+            Self::Box { center, size, rotation } => {
+                let size = Vec3::from(size.to_array().map(|edge| rest(edge, 2.0 * depth)));
+                Self::Box { center, size, rotation }
+            }
+            Self::Plane { point, normal } => {
+                Self::Plane { point: point - normal.normalize_or(Vec3::Y) * depth, normal }
+            }
+            Self::Hull { ref points, .. } => {
+                // Each face moves inward by at least `depth`, because none is nearer to the center.
+                let hull = Hull::new(points);
+                let Some((center, half)) = hull.map(|hull| {
+                    let center = points.iter().sum::<Vec3>() / points.len() as f32;
+                    (center, -hull.distance_and_normal(center).0)
+                }) else {
+                    return self.clone();
+                };
+                let points =
+                    points.iter().map(|p| center + (*p - center) * (rest(half, depth) / half)).collect();
+                Self::Hull { points, file: None, scale: None }
+            }
+        }
+    }
 
     /// Returns the collider shape; `None` for a hull whose points span no volume.
     pub fn obstacle(&self) -> Option<ColliderShape> {

@@ -52,7 +52,7 @@ impl History {
             stretch: [100.0 * m.stretch_mean, 100.0 * m.stretch_max],
             speed: m.speed_max,
             energy: [1e6 * e.kinetic, 1e6 * (e.bending + e.twisting + e.stretching)],
-            depth: [1e3 * m.max_depth, 1e3 * m.segment_depth],
+            depth: [1e3 * m.depth_inside(), 1e3 * m.segment_depth],
         });
         if self.moments.len() > MOMENTS {
             self.moments.pop_front();

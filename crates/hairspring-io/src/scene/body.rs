@@ -6,7 +6,7 @@ use super::{
     sentence::unknown,
 };
 use crate::{Character, ReadOptions, Result, load, makehuman, obj, read_body, units};
-use glam::Affine3A;
+use glam::{Affine3A, Mat3A};
 use hairspring::body::{Body, Joint, Part, Skin};
 
 impl Reader<'_> {
@@ -39,6 +39,13 @@ impl Reader<'_> {
             }
         };
         let body = &mut character.body;
+        if let Some(transform) = &named.transform {
+            if body.skin.is_some() || body.joints.len() > 1 {
+                let text = "`transform` is for a mesh without joints, and this file has joints; move it in the program that made it";
+                return Err(self.wrong(named.file.span().start, "transform", text.into()));
+            }
+            place(body, transform.to_affine());
+        }
         if let Some(parts) = &named.parts {
             let known: Vec<String> = body.mesh.parts.iter().map(|p| p.name.clone()).collect();
             if let Some(wrong) = parts.iter().find(|p| !known.contains(p)) {
@@ -155,6 +162,18 @@ pub(super) fn join(body: &mut Body, piece: Body, carrier: Option<u16>) {
         skin.weights.extend(weights);
     }
     body.mesh.append(piece.mesh);
+}
+
+/// Moves a mesh.
+fn place(body: &mut Body, by: Affine3A) {
+    let mesh = &mut body.mesh;
+    mesh.positions.iter_mut().for_each(|p| *p = by.transform_point3(*p));
+    let of_normals: Mat3A = by.matrix3.inverse().transpose();
+    mesh.normals.iter_mut().for_each(|n| *n = (of_normals * *n).normalize_or_zero());
+    if by.matrix3.determinant() < 0.0 {
+        // A mirror image has its triangles the other way round.
+        mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
 }
 
 /// Turns a body into one rigid piece that a clip of one joint moves.

@@ -37,8 +37,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     first_failure(text, 1, &[SceneFile::check("gravity", &scene.gravity)])?;
     for body in scene.body.iter().chain(&scene.collision) {
         body_ranges(text, body)?;
-        let bare = check(body.thickness.is_none(), "thickness", "omitted except in [[sheet]]");
-        first_failure(text, line_at(text, body.file.span().start), &[bare])?;
+        first_failure(text, line_at(text, body.file.span().start), &without_sheet_fields(body))?;
     }
     for sheet in &scene.sheet {
         body_ranges(text, sheet)?;
@@ -89,16 +88,9 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     }
     props::ranges(text, scene)?;
     for groom in &scene.groom {
-        let t = &groom.transform;
-        let not_0 = t.scale.is_finite() && t.scale.abs().min_element() > 0.0;
-        let checks = [
-            GroomFile::check("scale", &groom.scale),
-            Placement::check("position", &t.position),
-            Placement::check("rotation", &t.rotation),
-            Check { holds: not_0, ..Placement::check("scale", &t.scale) },
-        ];
         let from = line_at(text, groom.start());
-        first_failure(text, from, &checks)?;
+        first_failure(text, from, &[GroomFile::check("scale", &groom.scale)])?;
+        first_failure(text, from, &placement(&groom.transform))?;
         in_range(text, from, &groom.look)?;
         in_range(text, from, &groom.effects)?;
         in_range(text, from, &groom.thicken)?;
@@ -144,13 +136,35 @@ pub(super) fn way(keys: &[KeyFile]) -> [Check; 2] {
     ]
 }
 
+/// Checks that a mesh that is no sheet has none of a sheet's fields.
+pub(super) fn without_sheet_fields(body: &BodyFile) -> [Check; 2] {
+    [
+        check(body.thickness.is_none(), "thickness", "omitted except in [[sheet]]"),
+        check(body.initial.is_none(), "initial", "omitted except in [[sheet]] and [[collider]]"),
+    ]
+}
+
+/// Checks the position, rotation and scale of a groom or a mesh.
+pub(super) fn placement(t: &Placement) -> [Check; 3] {
+    let not_0 = t.scale.is_finite() && t.scale.abs().min_element() > 0.0;
+    [
+        Placement::check("position", &t.position),
+        Placement::check("rotation", &t.rotation),
+        Check { holds: not_0, ..Placement::check("scale", &t.scale) },
+    ]
+}
+
 pub(super) fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
     let checks = [
         BodyFile::check("scale", &body.scale),
         BodyFile::check("color", &body.color),
         BodyFile::check("roughness", &body.roughness),
     ];
-    first_failure(text, line_at(text, body.file.span().start), &checks)?;
+    let from = line_at(text, body.file.span().start);
+    first_failure(text, from, &checks)?;
+    if let Some(transform) = &body.transform {
+        first_failure(text, from, &placement(transform))?;
+    }
     body.more.iter().try_for_each(|file| body_ranges(text, file))
 }
 

@@ -6,14 +6,16 @@ use hairspring::{
     body::Key,
     forces::charge::Charged,
     material::PRESETS,
-    settings::{Effects, Neighbours, Solver, Volume, When, Wind, define_settings},
+    settings::{Effects, Neighbours, Setting, Solver, Volume, When, Wind, define_settings},
 };
-use hairspring_scene::{Camera, Collider, Ground, Guides, Hand, SceneSheet, deserialize_optional_color};
+use hairspring_scene::{
+    Camera, Collider, Ground, Guides, Hand, InitialContact, SceneSheet, deserialize_optional_color,
+};
 use serde::{Deserialize, Deserializer};
 use std::{collections::BTreeMap, path::PathBuf};
 use toml::Spanned;
 
-use super::groom_file::{GroomFile, guides};
+use super::groom_file::{GroomFile, Placement, guides};
 use crate::Axis;
 
 /// A file named in a scene, relative to the scene's folder, with its position in the text for messages.
@@ -38,14 +40,14 @@ define_settings! {
         /// Open meshes that hair collides with on both sides.
         #[serde(default)]
         sheet: Vec<BodyFile>, "none", {
-            text "any number of tables with the fields of `[body]`, `joint` and `thickness`"
+            text "any number of tables with the fields of `[body]`, `joint`, `thickness` and `initial`"
         }, default "none";
         /// Further simple shapes that hair collides with.
         #[serde(default)]
         collider: Vec<Collider>, "none", {table};
         /// Motion of the body.
         clip: Option<ClipFile>, "none", {table};
-        /// Objects that move independently of the body.
+        /// Objects with a motion of their own: in the world, or carried by a joint of the body.
         #[serde(default)]
         prop: Vec<PropFile>, "none", {table};
         /// The hairstyles. At least one is required, unless `builtin` is given.
@@ -134,6 +136,10 @@ define_settings! {
         color: Option<Vec3>, "linear RGB", {color}, default "the file's";
         /// Roughness of the whole surface, instead of the file's: 0 is glossy, 1 is matte.
         roughness: Option<f32>, "fraction", {0 to 1}, default "the file's";
+        /// Position, rotation and scale of a mesh without joints, after `scale` and `up`. The mesh is scaled, then rotated,
+        /// then moved.
+        transform: Option<Placement>, "none", {text "a table with the fields of `groom.transform`"},
+            default "none of them";
         /// `[collision]`, `[[sheet]]` and `more` only: the body's joint that moves a mesh without joints of its
         /// own.
         joint: Option<String>, "none", {text "the name of a joint of the body"}, default "the body's first";
@@ -144,6 +150,10 @@ define_settings! {
             default "none";
         /// `[[sheet]]` only: distance that hair keeps from the mesh, on both sides.
         thickness: Option<f32> = SceneSheet::THICKNESS, ["m"], {above 0};
+        /// `[[sheet]]` only: what happens to hair that passes through the mesh before the scene begins. `keep`: it
+        /// stays as it is. `push`: the mesh closes in on it from outside in a pre-roll of two seconds, or of
+        /// `solver.preroll` if that is longer.
+        initial: Option<InitialContact> = "keep", "none", {words <InitialContact as Setting>::WORDS};
     }
 }
 
@@ -186,7 +196,7 @@ define_settings! {
 const DRIVEN: When = When::Given("clip.joint");
 
 define_settings! {
-    /// One `[[prop]]`: an object that moves independently of the body.
+    /// One `[[prop]]`: an object with a motion of its own.
     #[derive(PartialEq)]
     file struct PropFile {
         /// Name of the joint that the prop adds to the body. Colliders, tools and the like use it to follow the
@@ -194,6 +204,10 @@ define_settings! {
         name: String, "none", {text "any text, except the name of another joint"};
         /// The prop's mesh, at its position before it moves. Without a mesh, the prop is invisible.
         mesh: Option<BodyFile>, "none", {text "a table with the fields of `[body]`"}, default "none";
+        /// The body's joint that carries the prop. The keys move the prop relative to that joint. Its coordinates
+        /// are those of the body at rest.
+        joint: Option<String>, "none", {text "the name of a joint of the body or of a prop above"},
+            default "none: the prop moves independently of the body";
         /// The keys of its motion, as in `clip`. Without keys, it does not move.
         #[serde(default)]
         keys: Vec<KeyFile> = [0.0; 0], "list", {text "in order of `time`, from 0 to 3600 [s]"};

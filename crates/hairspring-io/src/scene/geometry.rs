@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{Character, Problem, Result};
 use hairspring::material::Material;
-use hairspring_scene::{Scene, SceneSheet, builtin::BuiltinOptions};
+use hairspring_scene::{InitialContact, Scene, SceneSheet, builtin::BuiltinOptions};
 
 /// The geometry that a scene file describes.
 #[derive(PartialEq)]
@@ -24,6 +24,8 @@ pub(super) struct Asked<'a> {
     props: &'a [PropFile],
     collide_body: bool,
     settle: f32,
+    /// What each collider does with hair inside it before the scene begins.
+    initial: Vec<InitialContact>,
     grooms: Vec<GroomGeometry<'a>>,
     /// Radii that the materials of each groom set [m].
     radii: Vec<Vec<Option<f32>>>,
@@ -50,6 +52,7 @@ pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<
         props: &file.prop,
         collide_body: file.solver.collide_body,
         settle: file.solver.preroll,
+        initial: file.collider.iter().map(|collider| collider.initial).collect(),
         grooms: file.groom.iter().map(|groom| groom.geometry()).collect(),
         radii,
     })
@@ -98,13 +101,19 @@ impl Reader<'_> {
             (Some(collision), Some(body), Some(named)) => Some(self.carried(collision, body, named)?),
             (collision, ..) => collision,
         };
-        let clip = beside_props(clip, body.as_ref(), &props);
-        let body = body.map(|body| with_props(body, &props));
+        self.prop_joints(body.as_ref(), &props)?;
+        let whole = body.clone().map(|body| with_props(body, &props));
+        let clip = match (&body, &whole) {
+            (Some(body), Some(whole)) => beside_props(clip, (body, whole), &props),
+            _ => clip,
+        };
+        let body = whole;
         for sheet in &file.sheet {
             let open = self.body(sheet, "sheet")?.body;
             let body = body.as_ref().map_or(Ok(open.clone()), |body| self.carried(open, body, sheet))?;
             let thickness = sheet.thickness.unwrap_or(SceneSheet::THICKNESS);
-            scene.sheets.push(SceneSheet { body, thickness });
+            let initial = sheet.initial.unwrap_or_default();
+            scene.sheets.push(SceneSheet { body, thickness, initial });
         }
         (scene.body, scene.clip) = (body, clip);
         self.joints(scene)

@@ -2,7 +2,7 @@
 
 use super::{
     Reader,
-    file::{self, FileName},
+    file::FileName,
     groom_file::{ColorSource, GroomFile},
 };
 use crate::{
@@ -36,8 +36,7 @@ impl Reader<'_> {
         materials: &[Material],
         body: Option<&Body>,
     ) -> Result<Groom> {
-        let t = named.transform;
-        let place = Affine3A::from_scale_rotation_translation(t.scale, file::turn(t.rotation), t.position);
+        let place = named.transform.to_affine();
         let skin = body.filter(|_| named.file.is_some()).map(|body| Skin {
             tree: NearestTree::new(&body.mesh),
             size: extent(body.mesh.positions.iter().copied()),

@@ -1,8 +1,8 @@
 //! The fields of a `[[groom]]`.
 
-use super::file::{FileName, OneOrMore};
+use super::file::{FileName, OneOrMore, turn};
 use crate::Axis;
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use hairspring::{
     groom::{Growth, Thicken},
     settings::{Effects, define_settings},
@@ -143,7 +143,7 @@ impl GrowFile {
 }
 
 define_settings! {
-    /// `transform` of a groom: scale, then rotation about X, Y and Z in this order, then translation.
+    /// `transform` of a groom or a mesh: scale, then rotation about X, Y and Z in this order, then translation.
     #[derive(Clone, Copy, PartialEq)]
     #[serde(default)]
     file struct Placement {
@@ -154,6 +154,13 @@ define_settings! {
         /// Scale of the hairstyle: one factor, or one for each of x, y and z. Negative values mirror.
         #[serde(deserialize_with = "factors")]
         scale: Vec3 = 1.0, "factor", {text "finite and not 0"};
+    }
+}
+
+impl Placement {
+    /// Returns the transform.
+    pub(super) fn to_affine(self) -> Affine3A {
+        Affine3A::from_scale_rotation_translation(self.scale, turn(self.rotation), self.position)
     }
 }
 

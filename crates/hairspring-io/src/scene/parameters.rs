@@ -120,7 +120,7 @@ fn add(table: &str, parameters: &'static [Parameter], all: &mut BTreeMap<String,
 /// documented under `body`, and the others where they are first used.
 fn belongs(table: &str, name: &str) -> bool {
     match name {
-        "thickness" => table == "sheet",
+        "thickness" | "initial" if table != "collider" => table == "sheet",
         "joint" if table != "collision" => !["body", "sheet"].contains(&table),
         _ => name == "joint" || !["collision", "sheet"].contains(&table),
     }

@@ -1,14 +1,16 @@
-//! `[[prop]]`: objects that move independently of the body. Each adds a joint after the body's joints, which
-//! moves by its own keys. Its mesh becomes part of the body's mesh.
+//! `[[prop]]`: objects with a motion of their own. Each adds a joint after the body's joints, which moves by its
+//! own keys, in the world or relative to a joint that carries it. Its mesh becomes part of the body's mesh.
 
 use super::{
     Reader,
     air::lines,
     body::join,
-    check::{body_ranges, first_failure, way},
+    check::{body_ranges, first_failure, way, without_sheet_fields},
     file::{KeyFile, PropFile, SceneFile},
+    sentence::unknown,
 };
 use crate::{Problem, Result};
+use glam::Affine3A;
 use hairspring::{
     body::{Body, Clip, Joint, Trs, combine_clips, keyframe_clip},
     settings::check,
@@ -21,7 +23,10 @@ const HEADER: &str = "[[prop]]";
 pub(super) struct Prop {
     name: String,
     mesh: Option<Body>,
+    /// Its motion from rest, in the space of the body at rest.
     clip: Clip,
+    /// The joint that carries it.
+    joint: Option<String>,
 }
 
 /// Checks all `[[prop]]` tables.
@@ -38,11 +43,9 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> std::result::Result<(), P
         first_failure(text, line, &checks)?;
         if let Some(mesh) = &prop.mesh {
             body_ranges(text, mesh)?;
-            let bare = [
-                check(mesh.thickness.is_none(), "thickness", "omitted except in [[sheet]]"),
-                check(mesh.joint.is_none(), "joint", "omitted: the mesh follows its prop"),
-            ];
-            first_failure(text, line, &bare)?;
+            first_failure(text, line, &without_sheet_fields(mesh))?;
+            let bare = check(mesh.joint.is_none(), "joint", "omitted: the mesh follows its prop");
+            first_failure(text, line, &[bare])?;
         }
     }
     Ok(())
@@ -65,17 +68,49 @@ impl Reader<'_> {
             }
             let mesh = prop.mesh.as_ref().map(|mesh| self.body(mesh, "prop")).transpose()?.map(|c| c.body);
             let keys: Vec<_> = prop.keys.iter().map(KeyFile::key).collect();
-            props.push(Prop { name: prop.name.clone(), mesh, clip: keyframe_clip(&keys, prop.pivot) });
+            let (name, joint) = (prop.name.clone(), prop.joint.clone());
+            props.push(Prop { name, mesh, clip: keyframe_clip(&keys, prop.pivot), joint });
         }
         Ok(props)
     }
+
+    /// Checks that the joints which carry `props` exist among those of `body` and of the props before them.
+    pub(super) fn prop_joints(&self, body: Option<&Body>, props: &[Prop]) -> Result<()> {
+        let mut known: Vec<&str> = body.iter().flat_map(|b| &b.joints).map(|j| j.name.as_str()).collect();
+        for prop in props {
+            if let Some(joint) = &prop.joint
+                && !known.iter().any(|name| name.eq_ignore_ascii_case(joint))
+            {
+                let text = format!("the joint {}", unknown(joint, known.into_iter()));
+                return Err(self.wrong(self.text.find(HEADER).unwrap_or(0), "joint", text));
+            }
+            known.push(&prop.name);
+        }
+        Ok(())
+    }
+}
+
+/// Returns the transform of `prop` relative to the joint of `body` that carries it, if there is one, while the body is
+/// at rest.
+fn carrier(body: &Body, prop: &Prop) -> (Option<u32>, Affine3A) {
+    match prop.joint.as_ref().and_then(|name| body.joint(name)) {
+        Some(joint) => (Some(joint as u32), body.world(&body.rest_pose())[joint].inverse()),
+        None => (None, Affine3A::IDENTITY),
+    }
+}
+
+/// Returns a transform as translation, rotation and scale.
+fn trs(transform: Affine3A) -> Trs {
+    let (scale, rotation, translation) = transform.to_scale_rotation_translation();
+    Trs { translation, rotation, scale }
 }
 
 /// Returns the body with the meshes and joints of `props` appended.
 pub(super) fn with_props(mut body: Body, props: &[Prop]) -> Body {
     for prop in props {
         let joint = body.joints.len() as u16;
-        body.joints.push(Joint { name: prop.name.clone(), parent: None, rest: Trs::default() });
+        let (parent, rest) = carrier(&body, prop);
+        body.joints.push(Joint { name: prop.name.clone(), parent, rest: trs(rest) });
         if let Some(skin) = &mut body.skin {
             skin.inverse_bind.push(Default::default());
         }
@@ -86,13 +121,21 @@ pub(super) fn with_props(mut body: Body, props: &[Prop]) -> Body {
     body
 }
 
-/// Returns the motion of `body` combined with the motions of `props`.
-pub(super) fn beside_props(clip: Option<Clip>, body: Option<&Body>, props: &[Prop]) -> Option<Clip> {
-    match body {
-        Some(body) if !props.is_empty() => {
-            let ways: Vec<Clip> = props.iter().map(|prop| prop.clip.clone()).collect();
-            Some(combine_clips(clip, &body.rest_pose(), &ways))
-        }
-        _ => clip,
+/// Returns the motion of the joints of `body` without `props`, combined with the motions of `props`. `whole` is the
+/// body with the props.
+pub(super) fn beside_props(
+    clip: Option<Clip>,
+    (body, whole): (&Body, &Body),
+    props: &[Prop],
+) -> Option<Clip> {
+    if props.is_empty() {
+        return clip;
     }
+    let motion = |prop: &Prop| {
+        let (_, relative) = carrier(whole, prop);
+        let samples = prop.clip.samples.iter().map(|sample| trs(relative * sample.to_affine()));
+        Clip { samples: samples.collect(), ..prop.clip.clone() }
+    };
+    let motions: Vec<Clip> = props.iter().map(motion).collect();
+    Some(combine_clips(clip, &body.rest_pose(), &motions))
 }

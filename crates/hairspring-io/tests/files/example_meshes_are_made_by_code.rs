@@ -204,6 +204,40 @@ fn the_leaf() {
 }
 
 #[test]
+fn the_hat() {
+    let mut obj = Obj::default();
+    obj.part("hat");
+    const ROUND: usize = 48;
+    // The crown: radius and height of each ring. Its sides are steep, and its top is flat.
+    let crown = (1..=14).map(|row| {
+        let (sin, cos) = (0.25 * TAU * row as f32 / 14.0).sin_cos();
+        (sin.powf(0.8), 0.105 * cos.powf(0.8))
+    });
+    // The brim rises toward its rim.
+    let brim = (1..=6).map(|row| (1.0 + 0.09 * row as f32, 0.0008 * (row * row) as f32));
+    let top = obj.vertex(vec3(0.0, 0.105, 0.0));
+    for (radius, height) in crown.chain(brim) {
+        for k in 0..ROUND {
+            let (sin, cos) = (TAU * k as f32 / ROUND as f32).sin_cos();
+            // The front and the back of the brim are lower than its sides.
+            let bent = if radius > 1.0 { 0.06 * (radius - 1.0) * cos * cos } else { 0.0 };
+            obj.vertex(vec3(0.102 * radius * cos, height + bent, -0.122 * radius * sin));
+        }
+    }
+    let vertex = |ring: usize, k: usize| top + 1 + ring * ROUND + k % ROUND;
+    for k in 0..ROUND {
+        obj.face(&[top, vertex(0, k), vertex(0, k + 1)]);
+        for ring in 0..19 {
+            obj.face(&[vertex(ring, k), vertex(ring + 1, k), vertex(ring + 1, k + 1), vertex(ring, k + 1)]);
+        }
+    }
+    obj.assert_equals_file(
+        "meshes/hat.obj",
+        "A hat: one open surface, with its opening at the origin and its front toward +z",
+    );
+}
+
+#[test]
 fn the_balloon() {
     let mut obj = Obj::default();
     for (name, middle, radius) in

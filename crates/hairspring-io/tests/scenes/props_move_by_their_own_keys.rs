@@ -78,6 +78,105 @@ fn a_prop_can_be_added_to_the_built_in_scene() {
 }
 
 #[test]
+fn a_prop_rides_on_the_joint_that_it_names() {
+    let folder = folder();
+    let riding = |joint: &str| LID.replace("name = \"lid\"", &format!("name = \"lid\"\njoint = \"{joint}\""));
+    for motion in MOTIONS {
+        let scene = read(folder.path(), &format!("{}{motion}", riding("Root"))).unwrap().value;
+        let mut stage = Stage::new(scene).unwrap();
+        let rest = stage.body().unwrap().mesh.positions.clone();
+        let mut turned = 0.0f32;
+        for frame in 0..=60 {
+            if frame > 0 {
+                stage.step(hairspring_test::FRAME);
+            }
+            let root = stage.carried(Some("root"));
+            turned =
+                turned.max(root.rotation.angle_between(glam::Quat::IDENTITY) + root.translation.length());
+            let lifted = stage.carried(Some("lid")).point(Vec3::ZERO) - root.point(Vec3::ZERO);
+            // Its keys move it in the space of the joint.
+            let own = root.rotation.inverse() * lifted;
+            assert!(own.x.abs() + own.z.abs() < 1e-4, "{motion}: the lid moves by {own}");
+            for (now, rest) in stage.body().unwrap().positions[3..].iter().zip(&rest[3..]) {
+                assert!(
+                    now.distance(root.point(*rest + own)) < 1e-4,
+                    "{motion}: {now} of {rest}, frame {frame}"
+                );
+            }
+            let ball = stage.obstacles().last().unwrap().end;
+            assert!(ball.translation.distance(root.point(own)) < 1e-4, "{motion}: the ball is at {ball:?}");
+        }
+        assert_eq!(turned > 0.1, !motion.is_empty(), "{motion}: the body moves by {turned}");
+        let own = stage.carried(Some("root")).inverse().after(&stage.carried(Some("lid"))).translation;
+        assert!(own.distance(Vec3::Y * 2.0) < 1e-4, "{motion}: the keys end at {own}");
+    }
+    // A second prop rides on the first, and an unknown joint is refused.
+    let second = "[[prop]]\nname = \"knob\"\njoint = \"lid\"\n";
+    let mut stage = Stage::new(read(folder.path(), &format!("{LID}{second}")).unwrap().value).unwrap();
+    (0..60).for_each(|_| _ = stage.step(hairspring_test::FRAME));
+    assert!(stage.carried(Some("knob")).translation.distance(Vec3::Y * 2.0) < 1e-4);
+    let lost = message(&riding("neck"));
+    assert!(lost.contains("the joint `neck` is unknown"), "{lost}");
+    let later = message(&format!("{}{second}", riding("knob")));
+    assert!(later.contains("the joint `knob` is unknown"), "a prop rides on a prop below it: {later}");
+}
+
+#[test]
+fn a_prop_rides_on_the_head_of_the_built_in_scene() {
+    let folder = folder();
+    let text = "[builtin]\nstrands = 50\n[[prop]]\nname = \"hat\"\njoint = \"head\"\n\
+                mesh = { file = \"head.obj\", scale = 1 }\n";
+    let mut stage = Stage::new(read(folder.path(), text).unwrap().value).unwrap();
+    let mut turned = 0.0f32;
+    for _ in 0..60 {
+        stage.step(hairspring_test::FRAME);
+        let [head, hat] = ["head", "hat"].map(|name| stage.carried(Some(name)));
+        turned = turned.max(head.rotation.angle_between(glam::Quat::IDENTITY));
+        let off = hat.translation.distance(head.translation) + hat.rotation.angle_between(head.rotation);
+        assert!(off < 1e-3, "the hat leaves the head by {off}");
+    }
+    assert!(turned > 0.05, "the head turns by {turned}");
+}
+
+#[test]
+fn a_mesh_without_joints_is_placed_by_its_transform() {
+    let folder = folder();
+    let mesh = |transform: &str| {
+        format!(
+            "[[prop]]\nname = \"lid\"\nmesh = {{ file = \"head.obj\", parts = [\"neck\"], scale = 1{transform} }}\n\
+                 [[sheet]]\nfile = \"head.obj\"\nparts = [\"neck\"]\nscale = 1\njoint = \"lid\"{}\n",
+            transform.replace(", ", "\n")
+        )
+    };
+    let body = "[body]\nfile = \"head.obj\"\nscale = 1\nparts = [\"scalp\"]\n";
+    let groom = "[[groom]]\nfile = \"hair.data\"\n";
+    let scene =
+        |transform: &str| read(folder.path(), &format!("{body}{}{groom}", mesh(transform))).unwrap().value;
+    let positions = |scene: &hairspring_scene::Scene| {
+        let body = scene.body.as_ref().unwrap();
+        (body.mesh.positions[3..].to_vec(), scene.sheets[0].body.mesh.positions.clone())
+    };
+    let (before, sheet) = positions(&scene(""));
+    assert_eq!(before, sheet);
+    let moved = scene(
+        ", transform.position = [0, 1, 0], transform.rotation = [0, 0, 90], transform.scale = [2, 1, -1]",
+    );
+    let (after, sheet) = positions(&moved);
+    assert_eq!(after, sheet);
+    for (before, after) in before.iter().zip(&after) {
+        let right = Vec3::new(-before.y, 2.0 * before.x + 1.0, -before.z);
+        assert!(after.distance(right) < 1e-5, "{before} is placed at {after}, not {right}");
+    }
+    // A mirrored mesh keeps its outside.
+    let mesh = &moved.body.as_ref().unwrap().mesh;
+    let [a, b, c] = mesh.corners(mesh.triangles.len() - 1);
+    let normal = mesh.normals[mesh.triangles[mesh.triangles.len() - 1][0] as usize];
+    assert!((b - a).cross(c - a).dot(normal) > 0.0, "the triangles of a mirrored mesh face inward");
+    let wrong = message(&format!("{body}transform.scale = 0\n{groom}"));
+    assert!(wrong.contains("`scale` must be finite and not 0"), "{wrong}");
+}
+
+#[test]
 fn invalid_props_are_refused() {
     let groom = "[[groom]]\nfile = \"hair.data\"\n";
     let body = "[body]\nfile = \"head.obj\"\nscale = 1\n";

@@ -9,7 +9,7 @@ use super::{
     surface::{Surface, SurfaceKind},
     thickness::ThinMesh,
 };
-use crate::{Collider, Scene};
+use crate::{Collider, InitialContact, Scene, Shape};
 use hairspring::{
     body::Body,
     collide::{ColliderPose, ColliderShape, MovingCollider},
@@ -41,8 +41,18 @@ pub(super) struct StagedBody {
     /// See [`StagedBody::thin`].
     thin: Option<ThinMesh>,
     charged: StagedCharged,
+    /// Colliders that push hair out before the scene begins.
+    initial_pushes: Vec<InitialPush>,
     /// Number of user colliders, and their pose in the next step.
     pushed: (usize, RigidTransform),
+}
+
+/// A collider that pushes hair out before the scene begins.
+pub(super) struct InitialPush {
+    /// Its index among the obstacles.
+    pub(super) obstacle: usize,
+    /// Its shape; `None` for a sheet.
+    pub(super) shape: Option<Shape>,
 }
 
 /// What moves a collider.
@@ -103,10 +113,14 @@ impl StagedBody {
             reach: Reach::new(scene),
             thin: None,
             charged: StagedCharged::default(),
+            initial_pushes: Vec::new(),
             pushed: (0, RigidTransform::default()),
         };
         staged.add_surface(scene);
         for (k, sheet) in scene.sheets.iter().enumerate() {
+            if sheet.initial == InitialContact::Push {
+                staged.initial_pushes.push(InitialPush { obstacle: staged.obstacles.len(), shape: None });
+            }
             staged.add_mesh(scene, Mesh::Sheet(k), SurfaceKind::Sheet(sheet.thickness));
         }
         staged.meshes = staged.obstacles.len();
@@ -134,9 +148,12 @@ impl StagedBody {
         for (collider, joint) in colliders.iter().zip(&joints.colliders) {
             let carrier = joint.map_or(self.carrier(self.pose.anchor_joint()), Carrier::Joint);
             // A hull whose points span no volume is ignored.
-            if let Some(shape) = collider.shape.obstacle() {
-                self.add(shape, carrier);
+            let Some(shape) = collider.shape.obstacle() else { continue };
+            if collider.initial == InitialContact::Push {
+                let (obstacle, shape) = (self.obstacles.len(), Some(collider.shape.clone()));
+                self.initial_pushes.push(InitialPush { obstacle, shape });
             }
+            self.add(shape, carrier);
         }
     }
 
@@ -153,6 +170,7 @@ impl StagedBody {
         let pushed = self.obstacles.split_off(self.obstacles.len() - self.pushed.0);
         self.obstacles.truncate(self.meshes);
         self.carriers.truncate(self.meshes);
+        self.initial_pushes.retain(|push| push.obstacle < self.meshes);
         self.add_colliders(&scene.colliders, joints);
         self.add_charged(scene, joints);
         self.repose(scene, time);
@@ -336,6 +354,25 @@ impl StagedBody {
     /// Returns the colliders listed in the scene.
     pub(super) fn colliders(&self) -> &[MovingCollider] {
         &self.obstacles[self.meshes..self.carriers.len()]
+    }
+
+    /// Returns the colliders that push hair out before the scene begins.
+    pub(super) fn initial_pushes(&self) -> &[InitialPush] {
+        &self.initial_pushes
+    }
+
+    /// Returns the current poses of the colliders in which hair may stay as deep as it is authored.
+    pub(super) fn keeping_poses(&self) -> Vec<ColliderPose> {
+        let pushes = |k: usize| self.initial_pushes.iter().any(|push| push.obstacle == k);
+        let keeping = self.obstacles.iter().enumerate().filter(|(k, _)| !pushes(*k));
+        keeping.map(|(_, obstacle)| obstacle.end_pose()).collect()
+    }
+
+    /// Returns the colliders of the scene's sheets and those listed in the scene, without the body's meshes.
+    pub(super) fn sheets_and_colliders(&self) -> Vec<MovingCollider> {
+        let meshes = self.obstacles[..self.meshes].iter();
+        let sheets = meshes.filter(|obstacle| matches!(obstacle.shape, ColliderShape::Sheet(_)));
+        sheets.chain(self.colliders()).cloned().collect()
     }
 
     /// Returns the current poses of the colliders.

@@ -52,7 +52,8 @@ impl StagedHair {
             _ => groom,
         });
         let (strands, weights) = roles(&groom, guides);
-        let follow = weights.map(|w| Follow::new(groom.clone(), &strands, &w, effects, &body.poses()));
+        let follow =
+            weights.map(|w| Follow::new(groom.clone(), &strands, &w, effects, &body.keeping_poses()));
         let triangle = |s: &u32| groom.roots[*s as usize].triangle as usize;
         let rest_frames = mesh.map_or(Vec::new(), |mesh| {
             let frame = |s: &u32| {
@@ -172,6 +173,16 @@ impl StagedHair {
             Some(follow) => &self.guide_points[follow.guide_range(k)],
             None => &self.points[self.groom.range(strand)],
         }
+    }
+
+    /// Returns the current points of each simulated strand [m].
+    pub(super) fn simulated_points(&self) -> impl Iterator<Item = &[Vec3]> {
+        self.strands.iter().enumerate().map(|(k, strand)| self.guide_points(k, *strand as usize))
+    }
+
+    /// Returns the points of each simulated strand as authored [m].
+    pub(super) fn authored_points(&self) -> impl Iterator<Item = &[Vec3]> {
+        self.strands.iter().map(|strand| self.groom.strand(*strand as usize))
     }
 
     /// Returns the index of a strand among the simulated ones, or `None` if it is not simulated.

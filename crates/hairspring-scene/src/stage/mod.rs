@@ -7,12 +7,14 @@ mod charged;
 mod clock;
 mod fast_surface;
 mod hair;
+mod initial_push;
 mod join_grooms;
 mod joints;
 mod manipulators;
 mod preroll;
 mod reach;
 mod rigid_parts;
+mod starts_inside;
 mod surface;
 mod thickness;
 mod update_settings;
@@ -20,6 +22,7 @@ mod values;
 mod wind;
 
 pub use clock::FrameRate;
+pub use starts_inside::StartsInside;
 pub use thickness::ThinMesh;
 pub use values::{Picked, StrandFigures, Value};
 
@@ -167,8 +170,9 @@ pub struct Stage {
 
 impl Stage {
     /// Sets the scene up at time 0: the body is in the first pose of its clip, with the hair at rest on it.
-    /// Roots without a binding are bound to the nearest point of the body. With `solver.preroll`, this
-    /// includes the pre-roll, which takes as long as simulating that much of the scene.
+    /// Roots without a binding are bound to the nearest point of the body. With `solver.preroll`, or a collider
+    /// that pushes hair out ([`crate::InitialContact::Push`]), this includes the pre-roll, which takes as long as
+    /// simulating that much of the scene.
     pub fn new(mut scene: Scene) -> Result<Self, StageError> {
         check(&scene)?;
         if let Some(body) = &scene.body {
@@ -182,9 +186,7 @@ impl Stage {
             let first = hair.last().map_or(0, |hair| hair.first() + hair.simulated_strands().len());
             hair.push(StagedHair::new(groom, first, &scene, &body));
         }
-        if scene.solver.preroll > 0.0 {
-            preroll::settle(&mut hair, &scene, &body);
-        }
+        preroll::settle(&mut hair, &scene, &body);
         let simulation =
             join_grooms::simulation(&hair, &scene, scene.solver, body.pose().anchor(), &body.poses());
         let (wind, hands) = (StagedWind::new(joints.wind), StagedHands::new(joints.hands));

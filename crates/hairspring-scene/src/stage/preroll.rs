@@ -4,8 +4,16 @@
 //! balancing it as it stands would make it defy gravity permanently. In the pre-roll it falls once, onto a
 //! body that does not move, in still air, with strands passing through each other. The result replaces the
 //! groom: rest shapes, the rest volume, follow hairs and every reset use it.
+//!
+//! Colliders that are put on hair push it out in the pre-roll (`initial_push.rs`). Without `solver.preroll`, hair
+//! keeps its balance meanwhile.
 
-use super::{body::StagedBody, hair::StagedHair, join_grooms};
+use super::{
+    body::StagedBody,
+    hair::StagedHair,
+    initial_push::{self, Motion},
+    join_grooms,
+};
 use crate::Scene;
 use hairspring::{
     air::Air,
@@ -14,31 +22,50 @@ use hairspring::{
     simulation::StepInput,
 };
 
-/// Frame rate of the fall [Hz]; the number of substeps is the scene's.
+/// Frame rate of the pre-roll [Hz]; the number of substeps is the scene's.
 const RATE: f32 = 60.0;
 
-/// Lets all of `hair` fall for `scene.solver.preroll` seconds from its groom, starting at rest. `body` must
-/// be in its initial pose.
+/// Shortest pre-roll in which colliders push hair out [s].
+const PUSH: f32 = 2.0;
+
+/// Fraction of the pre-roll after which the pushing colliders have their own size. In the rest, hair comes to rest.
+const MOVING: f32 = 0.6;
+
+/// Lets all of `hair` fall for `scene.solver.preroll` seconds from its groom, starting at rest, and pushes it out of
+/// the colliders that push. `body` must be in its initial pose. Without a pre-roll, hair is not changed.
 pub(super) fn settle(hair: &mut [StagedHair], scene: &Scene, body: &StagedBody) {
+    let pushes = body.initial_pushes();
+    let falls = scene.solver.preroll > 0.0;
+    if !falls && pushes.is_empty() {
+        return;
+    }
     // Other integrators may be unstable on purpose.
-    let solver = Solver { sag_free: false, integrator: Integrator::BackwardEuler, ..scene.solver };
-    let poses = body.poses();
-    let mut simulation = join_grooms::simulation(hair, scene, solver, body.pose().anchor(), &poses);
+    let sag_free = scene.solver.sag_free && !falls;
+    let solver = Solver { sag_free, integrator: Integrator::BackwardEuler, ..scene.solver };
+    let anchor = body.pose().anchor();
+    let mut simulation = join_grooms::simulation(hair, scene, solver, anchor, &body.keeping_poses());
     // Volume and strand contact would preserve the volume of hair that stands out.
     simulation.set_volume(&Volume::default());
     simulation.set_neighbours(&Neighbours::default());
     let roots: Vec<RigidTransform> = hair.iter().flat_map(|hair| hair.roots()).copied().collect();
-    let drive = StepInput {
-        dt: 1.0 / RATE,
-        anchor: body.pose().anchor(),
-        roots: &roots,
-        obstacles: body.obstacles(),
-        air: Air::default(),
-    };
-    for _ in 0..(scene.solver.preroll * RATE).ceil() as usize {
-        simulation.step(&drive);
+    let mut obstacles = body.obstacles().to_vec();
+    let motions: Vec<Motion> = initial_push::motions(hair, body);
+    let length = if pushes.is_empty() { scene.solver.preroll } else { scene.solver.preroll.max(PUSH) };
+    let frames = (length * RATE).ceil();
+    for frame in 0..frames as usize {
+        let progress = |frame: usize| (frame as f32 / (MOVING * frames)).min(1.0);
+        for (push, motion) in pushes.iter().zip(&motions) {
+            motion.set(&mut obstacles[push.obstacle].shape, (progress(frame), progress(frame + 1)));
+        }
+        simulation.step(&StepInput {
+            dt: 1.0 / RATE,
+            anchor,
+            roots: &roots,
+            obstacles: &obstacles,
+            air: Air::default(),
+        });
     }
     for hair in hair {
-        hair.rest_as(&simulation, body, &poses);
+        hair.rest_as(&simulation, body, &body.poses());
     }
 }

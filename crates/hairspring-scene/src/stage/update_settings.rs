@@ -20,7 +20,7 @@ impl Stage {
     ///   `solver.sag_free`, the groom is then in balance under the new gravity, as it would be from the start.
     ///   Unchanged settings cost nothing.
     /// - The allowed depth of hair in a collider is that of the authored groom: a new collider pushes out all
-    ///   hair.
+    ///   hair at once, whatever its `initial`.
     /// - Manipulators of [`Stage::add_manipulator`] stay. A hand of the scene with unchanged settings also
     ///   stays; other hands stop, and new ones begin.
     ///

@@ -12,7 +12,7 @@ use hairspring::{
     settings::Solver,
 };
 use hairspring_scene::{
-    Collider, Guides, Scene, SceneGroom, Shape,
+    Collider, Guides, InitialContact, Scene, SceneGroom, Shape,
     stage::{FrameRate, Stage},
 };
 use hairspring_test::farthest;
@@ -143,6 +143,7 @@ fn attached_colliders_follow_the_cut_and_others_do_not() {
     let joint = |name: &str| Joint { name: name.into(), parent: None, rest: Trs::default() };
     let ball = |joint: &str, center: Vec3| Collider {
         joint: Some(joint.into()),
+        initial: InitialContact::Keep,
         shape: Shape::Sphere { center, radius: 0.02 },
     };
     for rate in RATES {

@@ -18,7 +18,7 @@ use hairspring::{
     material::Material,
     settings::{Solver, Volume, VolumeMethod},
 };
-use hairspring_scene::{Collider, Guides, Scene, SceneGroom, Shape, stage::Stage};
+use hairspring_scene::{Collider, Guides, InitialContact, Scene, SceneGroom, Shape, stage::Stage};
 use hairspring_test::{FRAME, farthest, line};
 
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
@@ -145,7 +145,8 @@ fn plates(away: Vec3) -> Scene {
     scene.volume = Volume { method: VolumeMethod::Density, ..Volume::default() };
     scene.solver.collide_body = false;
     let ball = Shape::Sphere { center: Vec3::new(0.03, 0.05, 0.0), radius: 0.02 };
-    scene.colliders = vec![Collider { shape: ball, joint: Some("body".into()) }];
+    scene.colliders =
+        vec![Collider { shape: ball, initial: InitialContact::Keep, joint: Some("body".into()) }];
     Scene { body: Some(body), clip: Some(clip), ..scene }
 }
 

@@ -8,7 +8,7 @@ use crate::support::play;
 use glam::{Quat, Vec3};
 use hairspring::{collide::ColliderShape, groom::Groom, material::Material, math::RigidTransform};
 use hairspring_scene::{
-    Guides, Scene, SceneGroom,
+    Guides, InitialContact, Scene, SceneGroom,
     builtin::{self, BuiltinOptions},
     stage::Stage,
 };
@@ -114,7 +114,8 @@ fn a_ball_stays_when_settings_change() {
     let center = Vec3::new(0.0, -0.35, 0.03);
     stage.set_user_colliders(&[sphere(0.05)], translation(center));
     let sphere = hairspring_scene::Shape::Sphere { center: Vec3::X, radius: 0.1 };
-    let colliders = vec![hairspring_scene::Collider { joint: None, shape: sphere }];
+    let colliders =
+        vec![hairspring_scene::Collider { joint: None, initial: InitialContact::Keep, shape: sphere }];
     let grooms = vec![SceneGroom { materials: vec![Material::default()], ..SceneGroom::default() }];
     let settings = Scene { colliders, grooms, ..stage.scene().clone() };
     stage.update_settings(settings).unwrap();

@@ -1,6 +1,7 @@
 //! Promises of scenes and their playback. Each file is one promise.
 
 mod builtin_head_is_sound;
+mod colliders_push_hair_out_at_the_start;
 mod cuts_in_a_clip_carry_hair_along;
 mod far_and_large_scenes_are_exact_or_refused;
 mod follow_hairs_may_be_placed_by_the_viewer;

@@ -12,7 +12,7 @@ use hairspring::{
     settings::{Solver, Volume, VolumeMethod},
 };
 use hairspring_scene::{
-    Collider, Guides, Scene, SceneGroom, Shape,
+    Collider, Guides, InitialContact, Scene, SceneGroom, Shape,
     stage::{Stage, Value},
 };
 use hairspring_test::FRAME;
@@ -131,7 +131,7 @@ fn contact_force_on_a_floor_balances_the_weight() {
     lying.solver.sag_free = false;
     lying.grooms[0].materials[0].bend = 0.01;
     let floor = Shape::Plane { point: Vec3::NEG_Y * 0.002, normal: Vec3::Y };
-    lying.colliders = vec![Collider { joint: None, shape: floor }];
+    lying.colliders = vec![Collider { joint: None, initial: InitialContact::Keep, shape: floor }];
     let mut stage = Stage::new(lying).unwrap();
     play(&mut stage, 180);
     let contact = values(&stage, Value::Contact);

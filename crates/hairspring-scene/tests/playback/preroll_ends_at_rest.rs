@@ -13,7 +13,7 @@ use hairspring::{
     settings::Solver,
 };
 use hairspring_scene::{
-    Collider, Guides, Scene, SceneGroom, Shape,
+    Collider, Guides, InitialContact, Scene, SceneGroom, Shape,
     builtin::{BuiltinOptions, scene as builtin},
     stage::Stage,
 };
@@ -32,7 +32,7 @@ fn ball(guides: Guides) -> Scene {
     let shape = Shape::Sphere { center: Vec3::ZERO, radius: HEAD };
     Scene {
         grooms: vec![SceneGroom { groom, guides, ..SceneGroom::default() }],
-        colliders: vec![Collider { shape, joint: None }],
+        colliders: vec![Collider { shape, initial: InitialContact::Keep, joint: None }],
         gravity: Vec3::new(0.0, -9.81, 0.0),
         ..Scene::default()
     }

@@ -114,7 +114,8 @@ fn wave(collide_body: bool) {
     };
     let mesh = Mesh { positions, triangles, ..Mesh::default() };
     let strip = Body { mesh, joints: board.joints.clone(), skin: Some(skin) };
-    waved.sheets = vec![SceneSheet { body: strip, thickness: SceneSheet::THICKNESS }];
+    waved.sheets =
+        vec![SceneSheet { body: strip, thickness: SceneSheet::THICKNESS, ..SceneSheet::default() }];
     waved.solver.collide_body = collide_body;
     play(waved);
 }

@@ -4,7 +4,7 @@
 use glam::Vec3;
 use hairspring::{material::Material, settings::Solver};
 use hairspring_scene::{
-    Collider, Scene, Shape,
+    Collider, InitialContact, Scene, Shape,
     builtin::{BuiltinOptions, scene},
     stage::{Stage, StageError},
 };
@@ -31,7 +31,7 @@ fn every_part_of_a_scene_is_checked() {
         (
             |s| {
                 let shape = Shape::Sphere { center: Vec3::ZERO, radius: -1.0 };
-                s.colliders = vec![Collider { joint: None, shape }];
+                s.colliders = vec![Collider { joint: None, initial: InitialContact::Keep, shape }];
             },
             "collider 0: `shape.sphere.radius` must be above 0 [m]",
         ),

@@ -16,7 +16,7 @@ use hairspring::{
     simulation::{Simulation, StepInput},
 };
 use hairspring_scene::{
-    Collider, Guides, Hand, Scene, SceneGroom, Shape,
+    Collider, Guides, Hand, InitialContact, Scene, SceneGroom, Shape,
     builtin::{self, BuiltinOptions},
     stage::{Stage, StageError},
 };
@@ -51,8 +51,11 @@ fn head() -> Scene {
     scene.turbulence = Turbulence { strength: 0.3, ..Turbulence::default() };
     scene.wind_occlusion = WindOcclusion { hair: 20.0, ..WindOcclusion::default() };
     scene.volume = Volume { method: VolumeMethod::Density, ..Volume::default() };
-    scene.colliders =
-        vec![Collider { joint: None, shape: Shape::Sphere { center: Vec3::ZERO, radius: 0.05 } }];
+    scene.colliders = vec![Collider {
+        joint: None,
+        initial: InitialContact::Keep,
+        shape: Shape::Sphere { center: Vec3::ZERO, radius: 0.05 },
+    }];
     scene
 }
 
@@ -277,7 +280,7 @@ fn colliders_can_be_added_and_removed() {
     play(&mut stage, 5);
     let settings = settings_of(&scene);
     let ball = Shape::Sphere { center: Vec3::new(0.02, -0.15, -0.02), radius: 0.03 };
-    let colliders = vec![Collider { joint: None, shape: ball.clone() }];
+    let colliders = vec![Collider { joint: None, initial: InitialContact::Keep, shape: ball.clone() }];
     stage.update_settings(Scene { colliders, ..settings.clone() }).unwrap();
     assert_eq!(stage.obstacles().len(), 1);
     play(&mut stage, 60);

@@ -10,7 +10,7 @@
 use glam::Vec3;
 use hairspring::{follow::HairInterpolation, settings::Effects};
 use hairspring_scene::{
-    Collider, Guides, Scene, Shape,
+    Collider, Guides, InitialContact, Scene, Shape,
     builtin::{BuiltinOptions, scene},
     stage::Stage,
 };
@@ -27,7 +27,11 @@ fn head(effects: Effects, colliders: Vec<Shape>) -> Scene {
         BuiltinOptions { strands: 1500, points: 24, guides: Guides::Count(150), ..BuiltinOptions::default() };
     let mut scene = scene(&options);
     scene.grooms.iter_mut().for_each(|g| g.effects = effects);
-    scene.colliders.extend(colliders.into_iter().map(|shape| Collider { joint: None, shape }));
+    scene.colliders.extend(colliders.into_iter().map(|shape| Collider {
+        joint: None,
+        initial: InitialContact::Keep,
+        shape,
+    }));
     scene
 }
 
@@ -164,6 +168,10 @@ fn every_shape_pushes_hairs_out_alike() {
 fn sheets_are_not_supported_on_the_card() {
     let Some(gpu) = crate::support::card() else { return };
     let mut scene = head(Effects::default(), Vec::new());
-    scene.sheets = vec![hairspring_scene::SceneSheet { body: scene.body.clone().unwrap(), thickness: 0.002 }];
+    scene.sheets = vec![hairspring_scene::SceneSheet {
+        body: scene.body.clone().unwrap(),
+        thickness: 0.002,
+        initial: InitialContact::Keep,
+    }];
     assert!(!gpu.gpu().can_place_among(Stage::new(scene).unwrap().obstacles()));
 }

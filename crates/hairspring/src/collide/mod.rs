@@ -19,6 +19,7 @@
 //! assert!(cloth.distance(Vec3::new(0.2, 0.2, 0.0)) < 0.0);
 //! ```
 
+mod crossing;
 mod custom;
 mod deep_interior;
 mod frame_colliders;
@@ -36,6 +37,7 @@ mod side;
 mod thin_shell;
 mod voxelize;
 
+pub use crossing::Crossing;
 pub use custom::Collider;
 pub(crate) use frame_colliders::FrameColliders;
 pub use hull::Hull;

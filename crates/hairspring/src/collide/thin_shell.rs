@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 /// Distance up to which triangles are found, in thicknesses. It is larger than 1 so that a separating point
 /// is still measured.
-const REACH: f32 = 2.0;
+pub(super) const REACH: f32 = 2.0;
 
 /// Maximum number of cells along the longest side.
 const CELLS: f32 = 128.0;
@@ -66,7 +66,7 @@ impl ThinShell {
     }
 
     /// Returns the distance that it extends from its triangles on each side [m].
-    pub(super) fn thickness(&self) -> f32 {
+    pub fn thickness(&self) -> f32 {
         self.thickness
     }
 
@@ -166,6 +166,12 @@ impl ThinShell {
     /// Returns the triangles within reach of cell `cell`, and possibly others.
     fn listed(&self, cell: usize) -> &[u32] {
         &self.triangles[self.first[cell] as usize..self.first[cell + 1] as usize]
+    }
+
+    /// Returns the triangles within reach of the cell that contains `p` [m], and possibly others.
+    pub(super) fn listed_at(&self, p: Vec3) -> &[u32] {
+        let (_, cell, _) = self.lattice.locate(p);
+        self.listed(self.lattice.index(cell))
     }
 
     /// Returns a bounding sphere: center and radius [m].

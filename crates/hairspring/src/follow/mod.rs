@@ -36,6 +36,7 @@
 mod carry;
 mod choose;
 mod keep_out;
+mod sheet_side;
 mod style;
 
 pub use choose::{assign_guides, choose_guides};
@@ -73,6 +74,9 @@ pub struct FollowLayout {
     pub guide_coordinates: Vec<[u16; 3]>,
     /// Allowed depth of each point inside a collider, 0 or less [m]; shape `[points]`.
     pub clearance: Vec<f32>,
+    /// Whether a thin shell separates each point from its first guide in the rest pose. Such points may be on
+    /// either side of shells. Shape `[points]`; empty if there is no such point.
+    pub apart: Vec<bool>,
 }
 
 /// The follow hairs of one groom: styling settings, and the transforms of the guides in the current frame.
@@ -167,6 +171,7 @@ impl Follow {
             .par_iter()
             .map(|p| obstacles.iter().map(|o| o.distance(*p)).fold(0.0, f32::min))
             .collect();
+        let apart = sheet_side::apart(&groom, guides, &weights, &guide_coordinates, obstacles);
         let guide_transforms = vec![Affine3A::IDENTITY; *guide_offsets.last().unwrap_or(&0) as usize];
         let guides = guides.to_vec();
         let layout = FollowLayout {
@@ -177,6 +182,7 @@ impl Follow {
             guide_indices,
             guide_coordinates,
             clearance,
+            apart,
         };
         Self { layout: Arc::new(layout), effects, guide_transforms }
     }
@@ -264,17 +270,18 @@ impl Follow {
 
     /// Returns the memory used, in bytes.
     pub fn bytes(&self) -> usize {
-        let FollowLayout { weights, guide_coordinates, clearance, .. } = &*self.layout;
+        let FollowLayout { weights, guide_coordinates, clearance, apart, .. } = &*self.layout;
         size_of_val(&weights[..])
             + size_of_val(&guide_coordinates[..])
             + size_of_val(&clearance[..])
+            + size_of_val(&apart[..])
             + size_of_val(&self.guide_transforms[..])
     }
 }
 
 impl HairInterpolation<'_> {
     /// Writes all points of the groom [m]. Guides keep their points; follow hairs are interpolated and moved
-    /// out of the colliders.
+    /// out of the colliders. Of a thin shell, they stay on the side of their first guide.
     ///
     /// # Panics
     /// If an array has another shape.
@@ -314,6 +321,8 @@ impl HairInterpolation<'_> {
         if self.effects != Effects::default() {
             style::apply_styling(&self.effects, s as u32, lead, ride, strand);
         }
+        let apart = layout.apart.get(range.clone());
+        sheet_side::keep_on_side(poses, lead, ride, apart, strand);
         let clearance = &layout.clearance[range];
         dispatch!(Level::new(), simd => keep_out::keep_out(simd, poses, strand, clearance));
     }

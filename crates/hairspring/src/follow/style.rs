@@ -14,15 +14,19 @@ pub(super) fn apply_styling(
     let last = (points.len() - 1) as f32;
     if effects.clump > 0.0 {
         for (i, (p, ride)) in points.iter_mut().zip(ride).enumerate().skip(1) {
-            let at = ride[0] as f32 / u16::MAX as f32 * (lead.len() - 1) as f32;
-            let k = (at as usize).min(lead.len() - 2);
-            let target = lead[k].lerp(lead[k + 1], at - k as f32);
-            *p = p.lerp(target, effects.clump * (i as f32 / last).powf(1.5));
+            *p = p.lerp(point_on_guide(lead, ride[0]), effects.clump * (i as f32 / last).powf(1.5));
         }
     }
     if effects.curl_radius > 0.0 || effects.noise > 0.0 {
         displace(effects, strand, points);
     }
+}
+
+/// Returns the point of a guide at a coordinate, given the guide's points `lead`.
+pub(super) fn point_on_guide(lead: &[Vec3], coordinate: u16) -> Vec3 {
+    let at = coordinate as f32 / u16::MAX as f32 * (lead.len() - 1) as f32;
+    let k = (at as usize).min(lead.len() - 2);
+    lead[k].lerp(lead[k + 1], at - k as f32)
 }
 
 /// Adds a helix and low-frequency noise. Both are given in a frame transported along the strand, so they

@@ -5,6 +5,13 @@ use crate::parallel::prelude::*;
 use crate::{collide::MovingCollider, math::RigidTransform};
 use glam::Vec3;
 
+/// Depth from which a point or segment counts as inside [m].
+const INSIDE: f64 = 1e-6;
+
+/// Length of hair beneath the skin that belongs to its root, over the depth of the root [1]. Hair that leaves
+/// the skin at 20° or more is out after that length.
+const WITH_ROOT: f32 = 3.0;
+
 /// Measures over all simulated points at the end of a step.
 ///
 /// For an example, see [`simulation`](crate::simulation).
@@ -15,10 +22,17 @@ pub struct Measure {
     pub stretch_mean: f64,
     /// Largest |ℓ/L − 1| [1].
     pub stretch_max: f64,
-    /// Points that are more than a micrometer deeper inside a collider than authored.
+    /// Points that are inside a collider, by more than a micrometer. Those beneath the skin together with their
+    /// root count only if they are deeper than authored.
     pub inside_points: usize,
-    /// Depth of the deepest of these points [m].
+    /// Depth of the deepest of these points below its authored depth [m].
     pub max_depth: f64,
+    /// Points of these that are no deeper than they were authored.
+    pub started_inside_points: usize,
+    /// Depth of the deepest of those [m].
+    pub started_inside_depth: f64,
+    /// Strands with such a point.
+    pub started_inside_strands: usize,
     /// Segments with a place more than a micrometer deeper inside a collider than any place of them was
     /// authored. Each eighth of their length is tested.
     pub inside_segments: usize,
@@ -59,6 +73,9 @@ impl Simulation {
                         stretch_max: a.stretch_max.max(b.stretch_max),
                         inside_points: a.inside_points + b.inside_points,
                         max_depth: a.max_depth.max(b.max_depth),
+                        started_inside_points: a.started_inside_points + b.started_inside_points,
+                        started_inside_depth: a.started_inside_depth.max(b.started_inside_depth),
+                        started_inside_strands: a.started_inside_strands + b.started_inside_strands,
                         inside_segments: a.inside_segments + b.inside_segments,
                         deep_segments: a.deep_segments + b.deep_segments,
                         segment_depth: a.segment_depth.max(b.segment_depth),
@@ -84,6 +101,7 @@ impl Simulation {
         let strand = self.strand(place);
         let (root, n, stride) = (strand.root(), strand.particle_count(), strand.stride());
         let mut before = Vec3::ZERO;
+        let mut beneath_skin = WITH_ROOT * -strand.clearance(0);
         for (i, x) in strand.particles().enumerate() {
             let v = strand.velocity(i);
             out.non_finite += x.to_array().iter().chain(&v.to_array()).filter(|c| !c.is_finite()).count();
@@ -102,7 +120,10 @@ impl Simulation {
                     .map(|(o, pose)| clearance - o.shape.distance(pose.inverse_point(root + x)))
                     .fold(0.0, f32::max) as f64;
                 out.max_depth = out.max_depth.max(depth);
-                out.inside_points += (depth > 1e-6) as usize;
+                out.inside_points += (depth > INSIDE) as usize;
+                if beneath_skin <= 0.0 && f64::from(-clearance) > INSIDE && depth <= INSIDE {
+                    out.count_started_inside(poses, root + x);
+                }
                 let authored = strand.rest_penetration(i);
                 let [a, b] = [root + before, root + x];
                 let begins_held = i == 2 * stride;
@@ -119,7 +140,7 @@ impl Simulation {
                     held = held.max(f64::from(authored - least.max(begins)));
                 }
                 out.segment_depth = out.segment_depth.max(depth);
-                out.inside_segments += (depth > 1e-6) as usize;
+                out.inside_segments += (depth > INSIDE) as usize;
                 out.deep_segments += (depth > 1e-3) as usize;
                 if held > 1e-3 && depth <= 1e-3 {
                     out.held_segments += 1;
@@ -128,9 +149,31 @@ impl Simulation {
             }
             if i % stride == 0 {
                 before = x;
+                let outside = strand.clearance(i) >= 0.0;
+                let length = if i + stride < n { strand.rest_length(i) } else { 0.0 };
+                beneath_skin = if outside { 0.0 } else { beneath_skin - length };
             }
         }
+        out.started_inside_strands = usize::from(out.started_inside_points > 0);
         (sum, segments, out)
+    }
+}
+
+impl Measure {
+    /// Returns the depth of the deepest of `inside_points` [m], whether it started inside or not.
+    pub fn depth_inside(&self) -> f64 {
+        self.max_depth.max(self.started_inside_depth)
+    }
+
+    /// Counts the point `p` [m], which was authored inside a collider, if it is inside one.
+    fn count_started_inside(&mut self, poses: &[(&MovingCollider, RigidTransform)], p: Vec3) {
+        let depth = near(poses, p, 0.0).map(|(o, pose)| -o.shape.distance(pose.inverse_point(p)));
+        let depth = f64::from(depth.fold(0.0, f32::max));
+        if depth > INSIDE {
+            self.inside_points += 1;
+            self.started_inside_points += 1;
+            self.started_inside_depth = self.started_inside_depth.max(depth);
+        }
     }
 }
 

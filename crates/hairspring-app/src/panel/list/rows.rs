@@ -4,7 +4,7 @@
 use super::super::{Labelled, keys};
 use crate::{
     edit,
-    field::{Field, Kind, of, place, tip, unit},
+    field::{Field, Kind, of, place, tip, unit, words},
     key::Key,
     session::{Action, Session},
 };
@@ -119,6 +119,20 @@ impl Rows<'_> {
                         for joint in self.session.joints() {
                             if ui.selectable_label(chosen == Some(joint), joint).clicked() {
                                 new = Some(Some(joint.as_str().into()));
+                            }
+                        }
+                    });
+                combo.response.labelled(ui, field.label).on_hover_text(tip(field, key));
+                new
+            }
+            (Kind::Word, Some(value)) => {
+                let chosen = value.as_str()?;
+                let mut new = None;
+                let combo =
+                    egui::ComboBox::from_id_salt(field.name).selected_text(chosen).show_ui(ui, |ui| {
+                        for word in words(key) {
+                            if ui.selectable_label(chosen == *word, *word).clicked() && chosen != *word {
+                                new = Some(Some((*word).into()));
                             }
                         }
                     });
