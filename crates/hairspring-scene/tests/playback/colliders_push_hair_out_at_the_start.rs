@@ -146,39 +146,40 @@ fn hat() -> Body {
     Body { mesh, joints: vec![Joint { name: "hat".into(), parent: None, rest: Trs::default() }], skin: None }
 }
 
-/// Number of hairs with a point on or beyond the hat above its brim.
-fn beyond_hat(stage: &Stage) -> usize {
-    let beyond = |p: &Vec3| p.length() > HAT + 1e-4 && p.y > BRIM + 0.006;
+/// Number of hairs with a point on or beyond the hat, `margin` [m] or more above its brim.
+fn beyond_hat(stage: &Stage, margin: f32) -> usize {
+    let beyond = |p: &Vec3| p.length() > HAT + 1e-4 && p.y > BRIM + margin;
     points(stage).chunks(POINTS).filter(|strand| strand.iter().any(beyond)).count()
 }
 
 #[test]
 fn a_hat_lays_hair_against_the_head() {
-    let mut scene = head(0.0, Guides::Count(150));
-    let sheet = |initial| SceneSheet {
-        body: hat(),
-        initial,
-        ..SceneSheet { thickness: 0.002, ..SceneSheet::default() }
-    };
-    scene.sheets = vec![sheet(InitialContact::Keep)];
-    let through = Stage::new(scene.clone()).unwrap();
-    let report = through.starts_inside().unwrap();
-    println!("without a push, {} of 400 hairs are beyond the hat: {report}", beyond_hat(&through));
-    assert!(beyond_hat(&through) > 300 && report.through_sheets > 100, "{report:?}");
+    // Hair that comes out at the brim may rise beside it: a little, and a follow hair by its distance from its guide.
+    for (guides, margin) in [(Guides::All, 0.006), (Guides::Count(150), 0.02)] {
+        let mut scene = head(0.0, guides);
+        let sheet = |initial| SceneSheet { body: hat(), initial, thickness: 0.002 };
+        scene.sheets = vec![sheet(InitialContact::Keep)];
+        let through = Stage::new(scene.clone()).unwrap();
+        let report = through.starts_inside().unwrap();
+        println!(
+            "without a push, {} of 400 hairs are beyond the hat: {report}",
+            beyond_hat(&through, margin)
+        );
+        assert!(beyond_hat(&through, margin) > 300 && report.through_sheets > 100, "{report:?}");
 
-    scene.sheets = vec![sheet(InitialContact::Push)];
-    let mut stage = Stage::new(scene).unwrap();
-    let start = points(&stage);
-    println!("{:?}, {} beyond", stage.starts_inside(), beyond_hat(&stage));
-    assert_eq!(beyond_hat(&stage), 0, "hair is beyond the hat");
-    assert_eq!(stage.starts_inside(), None, "hair starts inside");
-    play(&mut stage, 60);
-    let measure = stage.measure();
-    let moved = hairspring_test::farthest(&start, &points(&stage));
-    println!("hair moves by {:.2} mm in a second, {measure:?}", 1e3 * moved);
-    assert_eq!(beyond_hat(&stage), 0, "hair is beyond the hat after a second");
-    assert!(moved < 5e-3, "hair moves by {moved} m in a second");
-    assert!(measure.stretch_max < 0.011 && measure.speed_max < 0.02, "{measure:?}");
+        scene.sheets = vec![sheet(InitialContact::Push)];
+        let mut stage = Stage::new(scene).unwrap();
+        let start = points(&stage);
+        assert_eq!(beyond_hat(&stage, margin), 0, "{guides:?}: hair is beyond the hat");
+        assert_eq!(stage.starts_inside(), None, "{guides:?}: hair starts inside");
+        play(&mut stage, 60);
+        let measure = stage.measure();
+        let moved = hairspring_test::farthest(&start, &points(&stage));
+        println!("{guides:?}: hair moves by {:.2} mm in a second, {measure:?}", 1e3 * moved);
+        assert_eq!(beyond_hat(&stage, margin), 0, "{guides:?}: hair is beyond the hat after a second");
+        assert!(moved < 5e-3, "{guides:?}: hair moves by {moved} m in a second");
+        assert!(measure.stretch_max < 0.011 && measure.speed_max < 0.02, "{guides:?}: {measure:?}");
+    }
 }
 
 #[test]
