@@ -13,6 +13,7 @@ use hairspring::{
     settings::Effects,
 };
 use hairspring_test::line;
+use proptest::prelude::*;
 use std::sync::Arc;
 
 const STRANDS: usize = 12;
@@ -82,5 +83,52 @@ fn hair_that_is_apart_from_its_guide_at_rest_stays_there() {
     let all = placed(0, 0.018, Effects::default(), &[shell.end_pose()]);
     for (p, rest) in all.iter().zip(&groom.points) {
         assert!(p.distance(*rest) < 1e-5, "{rest} moves to {p}");
+    }
+}
+
+fn vector(size: f32) -> impl Strategy<Value = Vec3> {
+    (-size..size, -size..size, -size..size).prop_map(Vec3::from)
+}
+
+/// Fraction of the line before it crosses a triangle, in double precision; `None` if it passes the triangle by. `rim` is
+/// how far within the triangle and the line the crossing must be, as a fraction of them.
+fn cross(from: Vec3, to: Vec3, corners: [Vec3; 3], rim: f64) -> Option<f64> {
+    let [from, to, a, b, c] = [from, to, corners[0], corners[1], corners[2]].map(Vec3::as_dvec3);
+    let normal = (b - a).cross(c - a);
+    let fraction = (a - from).dot(normal) / (to - from).dot(normal);
+    let at = from + (to - from) * fraction;
+    let inside = [(a, b), (b, c), (c, a)]
+        .iter()
+        .all(|(p, q)| (*q - *p).cross(at - *p).dot(normal) >= rim * normal.length_squared());
+    ((rim..1.0 - rim).contains(&fraction) && inside).then_some(fraction)
+}
+
+proptest! {
+    /// The cells of a shell lose no crossing: the first is that of all triangles.
+    #[test]
+    fn a_line_crosses_the_first_of_all_triangles(
+        points in prop::collection::vec(vector(0.2), 30), from in vector(0.3), to in vector(0.3),
+        thickness in 0.001f32..0.02,
+    ) {
+        let corners = |t: usize| [points[3 * t], points[3 * t + 1], points[3 * t + 2]];
+        let triangles: Vec<[u32; 3]> = (0..10).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        let shell = ThinShell::new(&points, &triangles, thickness);
+        // Rounding may decide about a line along the rim of a triangle.
+        let rims = |rim: f64| (0..10).map(|t| cross(from, to, corners(t), rim).is_some()).collect::<Vec<_>>();
+        prop_assume!(rims(1e-3) == rims(-1e-3));
+        let all: Vec<(f64, Vec3)> = (0..10)
+            .filter_map(|t| {
+                let [a, b, c] = corners(t);
+                Some((cross(from, to, corners(t), 0.0)?, (b - a).cross(c - a).normalize()))
+            })
+            .collect();
+        let first = all.into_iter().min_by(|a, b| a.0.total_cmp(&b.0));
+        let found = shell.crossing(from, to);
+        prop_assert_eq!(found.is_some(), first.is_some(), "{:?}, not {:?}", found, first);
+        if let (Some(found), Some((fraction, normal))) = (found, first) {
+            prop_assert!((f64::from(found.fraction) - fraction).abs() < 1e-4, "{:?}, not {}", found, fraction);
+            prop_assert!(found.normal.dot(normal).abs() > 0.999, "{:?}, not {}", found, normal);
+            prop_assert!(found.normal.dot(from - to) >= 0.0, "the normal is on the other side: {:?}", found);
+        }
     }
 }
