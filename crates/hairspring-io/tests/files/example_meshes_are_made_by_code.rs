@@ -211,7 +211,7 @@ fn the_hat() {
     // The crown: radius and height of each ring. Its sides are steep, and its top is flat.
     let crown = (1..=14).map(|row| {
         let (sin, cos) = (0.25 * TAU * row as f32 / 14.0).sin_cos();
-        (sin.powf(0.8), 0.105 * cos.powf(0.8))
+        (sin.powf(0.8), 0.105 * cos.max(0.0).powf(0.8))
     });
     // The brim rises toward its rim.
     let brim = (1..=6).map(|row| (1.0 + 0.09 * row as f32, 0.0008 * (row * row) as f32));
