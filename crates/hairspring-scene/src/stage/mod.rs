@@ -13,6 +13,7 @@ mod manipulators;
 mod preroll;
 mod reach;
 mod rigid_parts;
+mod state;
 mod surface;
 mod thickness;
 mod update_settings;
@@ -20,6 +21,7 @@ mod values;
 mod wind;
 
 pub use clock::FrameRate;
+pub use state::StageState;
 pub use thickness::ThinMesh;
 pub use values::{Picked, StrandFigures, Value};
 
@@ -198,6 +200,7 @@ impl Stage {
     /// [`Stage::set_user_colliders`] stay where they are.
     pub fn reset(&mut self) {
         self.clock = Clock::ZERO;
+        self.body.pose_mut().move_to(RigidTransform::default());
         self.body.place(&self.scene, 0.0);
         self.hands.reset();
         self.simulation.remove_all_manipulators();
