@@ -26,7 +26,7 @@ impl App {
             return;
         }
         self.waits = 0;
-        let Some(line) = self.script.next() else { return };
+        let Some(line) = self.script.begin_next() else { return };
         match line {
             Line::Wait(steps) => {
                 self.waits = snapshot.step + steps;

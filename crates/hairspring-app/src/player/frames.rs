@@ -48,7 +48,7 @@ impl Frames {
         stages: impl Iterator<Item = &'a Stage>,
         (tool, body): (Option<&[ManipulatorId]>, RigidTransform),
     ) {
-        if frame % self.stride != 0 || self.kept.contains_key(&frame) {
+        if !frame.is_multiple_of(self.stride) || self.kept.contains_key(&frame) {
             return;
         }
         let stages = stages.map(Stage::state).collect();
@@ -58,7 +58,7 @@ impl Frames {
         while self.bytes > self.limit && self.kept.len() > 1 {
             self.stride *= 2;
             let stride = self.stride;
-            self.retain(|frame| frame % stride == 0);
+            self.retain(|frame| frame.is_multiple_of(stride));
         }
     }
 

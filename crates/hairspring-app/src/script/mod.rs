@@ -107,7 +107,7 @@ impl Script {
     }
 
     /// Begins the next line.
-    pub fn next(&mut self) -> Option<Line> {
+    pub fn begin_next(&mut self) -> Option<Line> {
         let next = self.lines.pop_front();
         self.current = next.as_ref().map(|(number, _)| *number);
         next.map(|(_, line)| line)
