@@ -35,7 +35,7 @@ pub fn draw(pen: &OverlayPainter, scenery: &StageSnapshot, picked: &[[usize; 2]]
     // All grooms use the same stride, so a groom of few hairs, such as brows, has few frames.
     let every = 1 + scenery.still.counts[1] / ROOTS;
     for (g, (still, points)) in scenery.still.grooms.iter().zip(scenery.points()).enumerate() {
-        for strand in (0..still.strands()).step_by(every) {
+        for strand in (0..still.strand_count()).step_by(every) {
             if let Some(root) = points.get(still.strand(strand).start) {
                 frame(pen, *root, scenery.root_frame(g, strand), SHORT, 1.5);
             }

@@ -47,6 +47,11 @@ impl Pulled {
         Self { now: pose, wanted: pose }
     }
 
+    /// Whether the object is, or is going, away from where it would be by itself.
+    pub fn acts(&self) -> bool {
+        [self.now, self.wanted].iter().any(|pose| *pose != RigidTransform::default())
+    }
+
     /// Advances by one step, with at most `fastest` [m/s]. Returns whether the object moved.
     pub fn go(&mut self, fastest: f32) -> bool {
         let way = self.wanted.translation - self.now.translation;

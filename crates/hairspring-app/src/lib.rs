@@ -15,7 +15,9 @@
 //! | `handle`, `carried` | handles in the picture, and the current transforms of objects |
 //! | `painter` | the renderers of the hair |
 //! | `panel` | the panels around the picture |
+//! | `bake` | groom files of a frame or of many |
 //! | `record`, `side_by_side`, `letters`, `script` | recordings, compared pictures and text on them; scripted sessions |
+//! | `recovery` | unsaved changes, kept for a crash |
 //! | `memory` | returns unused memory to the system |
 //! | `app`, `desktop` | the window, and the message if it cannot open |
 //!
@@ -27,6 +29,7 @@
 
 mod app;
 mod axes;
+mod bake;
 mod carried;
 mod defaults;
 mod desktop;
@@ -55,6 +58,7 @@ mod pointer_collider;
 mod ramp;
 mod reading;
 mod record;
+mod recovery;
 mod script;
 mod session;
 mod side_by_side;
@@ -68,22 +72,42 @@ pub use drag_limiter::Push;
 pub use error::AppError;
 pub use painter::Drawn;
 pub use pointer_collider::Pushed;
-pub use script::Line;
-pub use script::parse as read_script;
+pub use recovery::recovery_folder;
+pub use script::{Script, VERBS, Verb};
 pub use session::{Action, Session};
 pub use side_by_side::SideBySide;
+pub use snapshot::Snapshot;
 
 use eframe::egui;
+use std::sync::atomic::Ordering::Relaxed;
 
 /// Initial size of the window [points].
 const SIZE: [f32; 2] = [1360.0, 860.0];
 
+/// How a window was closed.
+pub struct Ended {
+    /// Number of errors that lines of the script caused. Each was printed to standard error with the number of
+    /// its line.
+    pub script_errors: usize,
+}
+
+/// Why a window did not open.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum RunError {
+    /// The scene or one of its files cannot be read.
+    #[error("{0}")]
+    Scene(String),
+    /// There is no desktop, or one of its libraries is missing.
+    #[error("{0}")]
+    Window(String),
+}
+
 /// Opens the window and returns when it is closed.
 ///
 /// # Errors
-/// Returns an error if there is no desktop, or if one of its libraries is missing. The message says what is
-/// missing and what to do.
-pub fn run(options: Options) -> Result<(), AppError> {
+/// Returns an error if the scene cannot be read, if there is no desktop, or if one of its libraries is missing.
+/// The message says what is missing and what to do.
+pub fn run(options: Options) -> Result<Ended, RunError> {
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()
             .with_title("Hairspring")
@@ -95,6 +119,7 @@ pub fn run(options: Options) -> Result<(), AppError> {
         dithering: false,
         ..Default::default()
     };
+    let errors = options.script_errors.clone();
     let open = || {
         eframe::run_native(
             "Hairspring",
@@ -103,7 +128,11 @@ pub fn run(options: Options) -> Result<(), AppError> {
         )
     };
     match desktop::without_library(open) {
-        Ok(opened) => opened.map_err(|why| AppError::new(desktop::sentence(&why.to_string()))),
-        Err(library) => Err(AppError::new(desktop::sentence(&library))),
+        Ok(Ok(())) => Ok(Ended { script_errors: errors.load(Relaxed) }),
+        Ok(Err(eframe::Error::AppCreation(why))) if why.is::<AppError>() => {
+            Err(RunError::Scene(why.to_string()))
+        }
+        Ok(Err(why)) => Err(RunError::Window(desktop::sentence(&why.to_string()))),
+        Err(library) => Err(RunError::Window(desktop::sentence(&library))),
     }
 }

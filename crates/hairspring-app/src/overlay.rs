@@ -95,7 +95,7 @@ pub fn draw(
     }
     if overlays.roots {
         for (groom, still) in scenery.still.grooms.iter().enumerate() {
-            for strand in (0..still.strands()).step_by(1 + still.strands() / 4000) {
+            for strand in (0..still.strand_count()).step_by(1 + still.strand_count() / 4000) {
                 if let Some(at) = scenery.root(groom, strand).and_then(|p| pen.at(p)) {
                     painter.circle_filled(at, 1.2, Color32::from_rgb(255, 200, 60));
                 }

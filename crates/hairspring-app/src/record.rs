@@ -5,10 +5,12 @@ use crate::{
     AppError,
     destination::destination,
     orbit::Orbit,
+    player,
     session::{Action, Session},
     side_by_side::SideBySide,
     snapshot::{Snapshot, StageSnapshot, ViewParameters},
 };
+use hairspring_scene::stage::FrameRate;
 use hairspring_view::{
     ClipWriter, Image, Renderer,
     gpu::{Gpu, GpuRenderer},
@@ -22,12 +24,31 @@ use std::{
     },
 };
 
-/// Frames per second of clips: every second step.
-const RATE: u32 = 30;
-/// Steps per frame.
-const STEPS: u64 = 2;
-/// Size of a recorded frame [pixels].
-const SIZE: [u32; 2] = [1280, 720];
+/// Size and rate of a recording.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RecordFormat {
+    /// Width and height [pixels].
+    pub size: [u32; 2],
+    /// Frames per second.
+    pub rate: FrameRate,
+}
+
+impl Default for RecordFormat {
+    fn default() -> Self {
+        Self { size: [1280, 720], rate: FrameRate::new(30, 1).expect("30 Hz is a rate") }
+    }
+}
+
+impl RecordFormat {
+    /// Smallest and largest width and height [pixels].
+    pub const SIDES: std::ops::RangeInclusive<u32> = 64..=8192;
+
+    /// Steps of a frame, none longer than those of the window, and the rate of the steps.
+    fn steps(self) -> (u32, FrameRate) {
+        let steps = (player::RATE.hertz() / self.rate.hertz()).ceil().max(1.0) as u32;
+        (steps, self.rate.times(steps))
+    }
+}
 
 /// Kind of a recording.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,6 +97,8 @@ pub struct RecordRequest {
     pub path: PathBuf,
     /// Duration [s]; not used for a still.
     pub seconds: f32,
+    /// Size and rate.
+    pub format: RecordFormat,
 }
 
 /// A frame of a recording.
@@ -124,7 +147,7 @@ impl Recorder {
         let sink = Sink::new(&wish, gpu)?;
         let frames = match wish.kind {
             Kind::Still => 1,
-            _ => ((wish.seconds * RATE as f32).round() as u32).clamp(1, 100_000),
+            _ => ((f64::from(wish.seconds) * wish.format.rate.hertz()).round() as u32).clamp(1, 100_000),
         };
         let played = session.playing();
         session.act(Action::Play(false))?;
@@ -177,11 +200,9 @@ impl Recorder {
             if self.sent == self.frames {
                 self.tell(Job::Finish);
             } else if matches!(self.wish.kind, Kind::Clip | Kind::Pictures) {
-                self.due = snapshot.step + STEPS;
-                for _ in 0..STEPS {
-                    // Commands to a live session cannot fail.
-                    let _ = session.act(Action::Step);
-                }
+                let (steps, rate) = self.wish.format.steps();
+                self.due = snapshot.step + u64::from(steps);
+                (0..steps).for_each(|_| session.step_at(rate));
             }
         }
         None
@@ -247,6 +268,7 @@ impl Brush {
 /// The output of the frames.
 struct Sink {
     path: PathBuf,
+    size: [u32; 2],
     clip: Option<ClipWriter>,
     brush: Brush,
     side_by_side: SideBySide,
@@ -255,6 +277,15 @@ struct Sink {
 impl Sink {
     fn new(wish: &RecordRequest, gpu: Option<Gpu>) -> Result<Self, AppError> {
         let path = wish.path.clone();
+        let RecordFormat { size, rate } = wish.format;
+        if size.iter().any(|side| !RecordFormat::SIDES.contains(side)) {
+            let [width, height] = size;
+            return Err(AppError::new(format!(
+                "a picture of {width} × {height} pixels cannot be recorded; each side is {} to {} pixels",
+                RecordFormat::SIDES.start(),
+                RecordFormat::SIDES.end()
+            )));
+        }
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let wrong = |expected: &str| {
             Err(AppError::new(format!("{}: {expected} was expected; name such a file", path.display())))
@@ -266,14 +297,14 @@ impl Sink {
             (Kind::Pictures, _) => {
                 return wrong("a .png with # for the frame's number, such as hair.####.png");
             }
-            (_, "mp4") => Some(ClipWriter::create(&path, SIZE[0], SIZE[1], f64::from(RATE))?),
+            (_, "mp4") => Some(ClipWriter::create(&path, size[0], size[1], rate.hertz())?),
             _ => return wrong("a .mp4"),
         };
         let brush = match gpu {
             Some(gpu) => Brush::Gpu(Box::new(GpuRenderer::new(&gpu))),
-            None => Brush::Cpu(Box::new(Renderer::new(SIZE[0], SIZE[1]))),
+            None => Brush::Cpu(Box::new(Renderer::new(size[0], size[1]))),
         };
-        Ok(Self { path, clip, brush, side_by_side: SideBySide::default() })
+        Ok(Self { path, size, clip, brush, side_by_side: SideBySide::default() })
     }
 
     /// Draws and writes until it receives the end. `said` is called with the result of each frame and at the
@@ -298,7 +329,7 @@ impl Sink {
     fn frame(&mut self, shot: &Shot) -> Result<(), AppError> {
         let image = match (&*shot.snapshot.stages, &*shot.sights) {
             ([], _) | (_, []) => return Ok(()),
-            ([one], [sight, ..]) | ([one, ..], [sight]) => self.brush.draw(one, sight, SIZE)?,
+            ([one], [sight, ..]) | ([one, ..], [sight]) => self.brush.draw(one, sight, self.size)?,
             ([left, right, ..], [first, second, ..]) => {
                 self.pair([(left, first), (right, second)], &shot.captions)?
             }
@@ -320,10 +351,10 @@ impl Sink {
         captions: &[String; 2],
     ) -> Result<Image, AppError> {
         let [(left, first), (right, second)] = sides;
-        let size = SideBySide::half(SIZE);
+        let size = SideBySide::half(self.size);
         let halves = [self.brush.draw(left, first, size)?, self.brush.draw(right, second, size)?];
-        let mut all = Image::new(SIZE[0], SIZE[1]);
-        self.side_by_side.draw(&mut all, 0, SIZE, halves.each_ref(), captions);
+        let mut all = Image::new(self.size[0], self.size[1]);
+        self.side_by_side.draw(&mut all, 0, self.size, halves.each_ref(), captions);
         Ok(all)
     }
 }
@@ -333,4 +364,19 @@ pub fn write(path: &Path, image: &hairspring_view::Image) -> Result<(), AppError
     let jpeg = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("jpg"));
     let written = if jpeg { write_jpeg(path, image) } else { write_png(path, image) };
     Ok(written?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_steps_of_a_frame_take_as_long_as_the_frame_and_none_is_longer_than_those_of_the_window() {
+        for rate in ["1", "12", "23.976", "24", "25", "29.97", "30", "50", "59.94", "60", "120"] {
+            let rate: FrameRate = rate.parse().unwrap();
+            let (steps, of_step) = RecordFormat { rate, ..RecordFormat::default() }.steps();
+            assert!((f64::from(steps) * of_step.frame_length() - rate.frame_length()).abs() < 1e-12);
+            assert!(of_step.frame_length() <= player::RATE.frame_length() + 1e-12, "{rate:?}: {steps} steps");
+        }
+    }
 }

@@ -3,9 +3,10 @@
 use crate::{
     carried::Carried,
     followers::Followers,
+    player::CachedFrames,
     pointer_collider::{Placed, Pushed},
 };
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec2, Vec3};
 use hairspring::{
     body::{Mesh, Part},
     collide::MovingCollider,
@@ -13,6 +14,7 @@ use hairspring::{
     math::RigidTransform,
     simulation::{Energy, Measure, VolumeReport},
 };
+use hairspring_io::Strands;
 use hairspring_scene::{
     HairLook,
     stage::{FrameReport, Picked, Stage, StrandFigures, Value},
@@ -37,14 +39,21 @@ pub struct StillGroom {
     offsets: Vec<u32>,
     radii: Vec<f32>,
     colors: Vec<Vec3>,
+    root_uvs: Vec<Vec2>,
     /// Binding of each strand's root to the body; empty if the roots are not bound.
     bindings: Vec<RootBinding>,
 }
 
 impl StillGroom {
     /// Number of strands.
-    pub fn strands(&self) -> usize {
+    pub fn strand_count(&self) -> usize {
         self.offsets.len().saturating_sub(1)
+    }
+
+    /// The strands as a file has them, without points.
+    pub fn strands(&self) -> Strands<'_> {
+        let Self { offsets, radii, colors, root_uvs, .. } = self;
+        Strands { points: &[], offsets, radii, colors, root_uvs }
     }
 
     /// Points of a strand; empty if the strand does not exist.
@@ -63,6 +72,7 @@ impl Still {
             offsets: s.groom.offsets.clone(),
             radii: s.groom.radii.clone(),
             colors: s.groom.colors.clone(),
+            root_uvs: s.groom.root_uvs.clone(),
             bindings: s.groom.roots.clone(),
         });
         let mesh = |m: &Mesh| (m.triangles.clone(), m.parts.clone());
@@ -80,6 +90,8 @@ impl Still {
 pub struct StageSnapshot {
     /// The static data.
     pub still: Arc<Still>,
+    /// Time in the scene [s].
+    pub time: f64,
     /// The look of each groom.
     pub looks: Vec<HairLook>,
     /// Points of each groom [m]. They are only valid for grooms whose follow hairs are not left to the
@@ -116,6 +128,7 @@ impl StageSnapshot {
     pub fn new(still: Arc<Still>) -> Self {
         Self {
             still,
+            time: 0.0,
             looks: Vec::new(),
             points: Vec::new(),
             followers: Vec::new(),
@@ -136,6 +149,7 @@ impl StageSnapshot {
     /// Copies the current state of a stage, reusing the memory.
     pub fn fill(&mut self, stage: &Stage, still: &Arc<Still>, value: Option<Value>) {
         self.still = still.clone();
+        self.time = stage.time();
         let grooms = stage.strands().len();
         self.points.resize_with(grooms, Vec::new);
         self.followers.resize_with(grooms, || None);
@@ -227,7 +241,7 @@ impl StageSnapshot {
         let thinned: Vec<Option<Thin>> = (0..self.points.len())
             .map(|g| {
                 // Brows have few hairs and are not thinned.
-                let every = sight.every.min(self.still.grooms[g].strands() / FEW).max(1);
+                let every = sight.every.min(self.still.grooms[g].strand_count() / FEW).max(1);
                 (every > 1).then(|| Thin::new(self, g, every))
             })
             .collect();
@@ -366,6 +380,10 @@ pub struct Snapshot {
     pub scene: u64,
     /// Time in the scene [s].
     pub time: f64,
+    /// Number of the frame of 1/60 s, from 0 at time 0.
+    pub frame: u64,
+    /// The frames that the timeline can return to.
+    pub cached: CachedFrames,
     /// The scene, and the one that it is compared with.
     pub stages: Vec<StageSnapshot>,
     /// Time of each stage of the step.
@@ -396,7 +414,7 @@ mod tests {
         let mut scenery = StageSnapshot::new(still.clone());
         scenery.fill(&stage, &still, None);
         for (groom, points) in scenery.points().enumerate() {
-            for strand in 0..still.grooms[groom].strands() {
+            for strand in 0..still.grooms[groom].strand_count() {
                 let root = scenery.root(groom, strand).unwrap();
                 let first = points[still.grooms[groom].strand(strand).start];
                 assert!(root.distance(first) < 2e-6, "groom {groom}, strand {strand}: {root}, {first}");

@@ -8,15 +8,15 @@
 mod memory;
 mod support;
 
-use egui_kittest::Harness;
+use egui_kittest::{Harness, kittest::Queryable};
 use hairspring_app::App;
 use hairspring_view as _;
 use std::{
-    path::{Path, PathBuf},
+    path::Path,
     sync::Arc,
     time::{Duration, Instant},
 };
-use support::{SMALL, sound, until, window};
+use support::{Dropped, SMALL, sound, until, window};
 
 /// A small random generator (SplitMix64) with a fixed seed, so that every run is the same.
 struct Monkey(u64);
@@ -106,20 +106,6 @@ const MORE_IN_USE: usize = 32 << 20;
 /// The largest allowed growth of memory held by the process [bytes], which includes fragmentation.
 const MORE_HELD: usize = 96 << 20;
 
-/// A file that is dropped on the window.
-#[derive(Debug)]
-struct Dropped(PathBuf);
-
-impl egui::DroppedFile for Dropped {
-    fn path(&self) -> &Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|why| why.to_string())
-    }
-}
-
 /// Reopens the first scene; returns the memory in use and the memory held by the process [bytes].
 fn home(window: &mut Harness<'static, App>, folder: &Path) -> [usize; 2] {
     let file = folder.join("home.toml");
@@ -127,6 +113,11 @@ fn home(window: &mut Harness<'static, App>, folder: &Path) -> [usize; 2] {
     std::fs::write(&file, SMALL).unwrap();
     window.input_mut().dropped_files.push(Arc::new(Dropped(file)));
     window.step();
+    window.step();
+    // The random input has changed the scene.
+    if let Some(button) = window.query_by_label("Don't save") {
+        button.click();
+    }
     let there = |app: &App| {
         let session = app.session();
         session.document().text() == SMALL && session.latest().is_some_and(|s| s.scene == session.begun())

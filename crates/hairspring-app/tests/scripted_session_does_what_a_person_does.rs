@@ -21,7 +21,7 @@ fn a_session_opens_plays_changes_records_saves_and_opens_again() {
          set builtin.look.roughness 0.5\nset gravity [0.0, -5.0, 0.0]\nwait 10\n\
          set solver.inertia 0.5\nundo\nredo\nundo\n\
          hand ball\ndrag 0.2 0.5 0.7 0.5 12\nhand grab\ndrag 0.5 0.5 0.7 0.7 12\nhand head\ndrag 0.5 0.4 0.6 0.4 8\nhand comb\ndrag 0.5 0.5 0.6 0.7 12\nhand hand\ndrag 0.3 0.3 0.4 0.7 12\nhand look\ndrag 0.5 0.5 0.6 0.5 4\n\
-         show tension\nslice on\nvolume on\ncolliders on\nroots on\nframes on\nwait 3\nshow natural\n\
+         show tension\noverlay slice on\noverlay volume on\noverlay colliders on\noverlay roots on\noverlay frames on\nwait 3\nshow natural\n\
          still {still}\nclip {clip} 0.5\nturntable {turn} 0.3\npictures {pictures} 0.1\n\
          save {saved}\nnew curly\nwait 2\nopen {saved}\nwait 3\n",
         still = file("still.png").display(),

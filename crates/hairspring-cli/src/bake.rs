@@ -12,14 +12,10 @@ use crate::{
     totals::{self, Totals},
 };
 use clap::Parser;
-use glam::{Vec2, Vec3};
-use hairspring_io::{Format, Strands, write_strands};
+use hairspring_io::{Format, FrameWriter};
 use hairspring_scene::stage::{FrameRate, Stage};
 use serde_json::json;
-use std::{
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::{path::PathBuf, time::Instant};
 
 /// Simulates a scene and writes its hair as one groom file per frame (.hair, .tfx or .data), in meters, Y up.
 ///
@@ -96,7 +92,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let mut stage = Stage::new(scene)?;
     console.note_all(stage.thin_mesh());
     console.note_all(stage.starts_inside());
-    let mut sheaf = Sheaf::new(&stage, console);
+    let (mut writer, left_out) = FrameWriter::new(stage.strands().map(|s| s.groom.into()));
+    console.note_all(left_out);
     interrupt::finish_current("the current frame");
     if let Some(manifest) = &mut manifest {
         manifest.will_replace(&wanted, pattern);
@@ -110,7 +107,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         if wanted.binary_search(&frame).is_ok() {
             let began = Instant::now();
             let path = output::frame_path(pattern, frame);
-            sheaf.write(&path, stage)?;
+            writer.write(&path, stage.time(), stage.strands().map(|s| s.points))?;
             if let Some(manifest) = &mut manifest {
                 manifest.finished(&path)?;
             }
@@ -151,67 +148,4 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         totals.tell(&stage);
     }
     Ok(())
-}
-
-/// All grooms of a stage as the strands of one file. The static arrays are kept from frame to frame.
-struct Sheaf {
-    points: Vec<Vec3>,
-    offsets: Vec<u32>,
-    radii: Vec<f32>,
-    colors: Vec<Vec3>,
-    root_uvs: Vec<Vec2>,
-}
-
-impl Sheaf {
-    fn new(stage: &Stage, console: Console) -> Self {
-        let grooms: Vec<_> = stage.strands().map(|s| s.groom).collect();
-        let mut offsets = vec![0];
-        for groom in &grooms {
-            let before = offsets.last().copied().unwrap_or(0);
-            offsets.extend(groom.offsets.iter().skip(1).map(|o| o + before));
-        }
-        // A file has a color at every point or none at all; the same holds for texture coordinates.
-        let colored = grooms.iter().filter(|g| !g.colors.is_empty()).count();
-        let mapped = grooms.iter().filter(|g| !g.root_uvs.is_empty()).count();
-        for (some, what) in [(colored, "colors"), (mapped, "texture coordinates")] {
-            if some > 0 && some < grooms.len() {
-                console.note(format_args!("only {some} of {} grooms have {what}; left out", grooms.len()));
-            }
-        }
-        Self {
-            points: Vec::new(),
-            offsets,
-            radii: grooms.iter().flat_map(|g| g.radii.iter().copied()).collect(),
-            colors: match colored == grooms.len() {
-                true => grooms.iter().flat_map(|g| g.colors.iter().copied()).collect(),
-                false => Vec::new(),
-            },
-            root_uvs: match mapped == grooms.len() {
-                true => grooms.iter().flat_map(|g| g.root_uvs.iter().copied()).collect(),
-                false => Vec::new(),
-            },
-        }
-    }
-
-    fn write(&mut self, path: &Path, stage: &Stage) -> Result<(), Fault> {
-        self.points.clear();
-        stage.strands().for_each(|s| self.points.extend_from_slice(s.points));
-        if let Some(point) = self.points.iter().position(|p| !p.is_finite()) {
-            let strand = self.offsets.partition_point(|first| *first as usize <= point) - 1;
-            let text = format!(
-                "strand {strand} is not finite at {} s, so {} was not written; a setting of the scene is too large",
-                stage.time(),
-                path.display()
-            );
-            return Err(Fault::Scene(text));
-        }
-        let strands = Strands {
-            points: &self.points,
-            offsets: &self.offsets,
-            radii: &self.radii,
-            colors: &self.colors,
-            root_uvs: &self.root_uvs,
-        };
-        write_strands(path, strands).map(drop).map_err(Fault::writing)
-    }
 }

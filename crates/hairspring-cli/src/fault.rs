@@ -1,6 +1,6 @@
 //! Why the program ends without having finished: one sentence and an exit code.
 
-use hairspring_io::Error as FileError;
+use hairspring_io::{Error as FileError, FrameError};
 use hairspring_scene::stage::StageError;
 use hairspring_view::{OutputError, gpu::GpuError};
 use std::{fmt, path::Path};
@@ -73,6 +73,15 @@ impl From<OutputError> for Fault {
 impl From<GpuError> for Fault {
     fn from(error: GpuError) -> Self {
         Self::Lacking(error.to_string())
+    }
+}
+
+impl From<FrameError> for Fault {
+    fn from(error: FrameError) -> Self {
+        match error {
+            FrameError::NotFinite { .. } => Self::Scene(error.to_string()),
+            FrameError::File(error) => Self::writing(error),
+        }
     }
 }
 

@@ -19,13 +19,8 @@ const MOST: u32 = 1_000_000;
 impl FrameRange {
     /// The frames of a motion at the rate `fps`, including its last moment; five seconds without a motion.
     pub fn whole(clip: Option<&Clip>, fps: FrameRate) -> Self {
-        let fps = fps.hertz();
-        let frames = match clip.filter(|c| c.frame_count() > 1) {
-            // Adds a small tolerance (0.0005 frames) for durations that are not exact in binary.
-            Some(clip) => (clip.duration() * fps + 5e-4).floor() + 1.0,
-            None => (5.0 * fps).round(),
-        };
-        Self { first: 1, last: (frames as u32).clamp(1, MOST) }
+        let last = fps.frames_of(clip.filter(|c| c.frame_count() > 1).map(Clip::duration));
+        Self { first: 1, last: last.min(MOST) }
     }
 
     /// The number of frames.

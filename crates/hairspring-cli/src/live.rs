@@ -2,20 +2,25 @@
 
 use crate::{console::Console, demo, fault::Fault};
 use clap::{Parser, ValueEnum};
-use hairspring_app::{Document, Drawn, read_script};
-use std::path::PathBuf;
+use hairspring_app::{Document, Drawn, Ended, RunError, Script, recovery_folder};
+use hairspring_io::Format;
+use std::path::{Path, PathBuf};
 
 /// Opens a window where hair can be viewed, touched and tuned while it moves.
 #[derive(Parser, Default)]
 #[command(after_help = "\
 Examples:
   hairspring live shot.toml
+  hairspring live ponytail.tfx                  a groom on its own; a body grows a short coat
   hairspring live --script show.txt
 
-Press `?` in the window for the keys. A script has one command per line: wait 30, set KEY VALUE, drag X Y X Y FRAMES, shot FILE.png, pace, quit.")]
+Press `?` in the window for the keys. A script has one command per line, such as `wait 30`, `set KEY VALUE`, `shot FILE.png` or `quit`; docs/window.md lists all. \
+An error of a line is printed with the line's number. The script goes on, and the exit code is 2.")]
 pub struct Options {
-    /// A scene file [default: the built-in head]
-    scene: Option<PathBuf>,
+    /// A scene (.toml), a groom (.hair, .tfx, .data, .obj), a body (.glb, .gltf, .vrm, .obj, .tfxmesh) or a
+    /// motion (.bvh) [default: the built-in head]
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
 
     /// Run a script, line by line
     #[arg(long, value_name = "FILE")]
@@ -40,27 +45,54 @@ enum Draw {
 
 /// Runs the command.
 pub fn run(options: &Options) -> Result<(), Fault> {
-    if !has_desktop() {
-        let text = "there is no desktop to open a window on; neither WAYLAND_DISPLAY nor DISPLAY is set";
-        return Err(Fault::Lacking(text.into()));
-    }
-    let document = options.scene.as_ref().map(|path| Document::open(path)).transpose();
-    let document = document.map_err(|why| Fault::Content(why.to_string()))?;
+    let document = options.file.as_deref().map(open).transpose()?;
+    // Nobody answers the offers of a scripted session.
+    let recovery = if options.script.is_some() { None } else { recovery_folder() };
     let script = match &options.script {
         Some(path) => {
             let text = std::fs::read_to_string(path)
                 .map_err(|why| Fault::Unreadable(format!("{} could not be read: {why}", path.display())))?;
-            read_script(&text).map_err(|why| Fault::Content(why.to_string()))?
+            Script::parse(&path.display().to_string(), &text).map_err(|why| Fault::Usage(why.to_string()))?
         }
         None => Default::default(),
     };
+    if !has_desktop() {
+        let text = "there is no desktop to open a window on; neither WAYLAND_DISPLAY nor DISPLAY is set";
+        return Err(Fault::Lacking(text.into()));
+    }
     let drawn = match options.draw {
         Draw::Auto => Drawn::Auto,
         Draw::Gpu => Drawn::Gpu,
         Draw::Cpu => Drawn::Cpu,
     };
-    hairspring_app::run(hairspring_app::Options { document, script, drawn })
-        .map_err(|why| Fault::Lacking(why.to_string()))
+    let Ended { script_errors } = hairspring_app::run(hairspring_app::Options {
+        document,
+        script,
+        drawn,
+        recovery,
+        ..Default::default()
+    })
+    .map_err(|why| match why {
+        RunError::Scene(why) => Fault::Content(why),
+        RunError::Window(why) => Fault::Lacking(why),
+    })?;
+    match script_errors {
+        0 => Ok(()),
+        1 => Err(Fault::Usage("a line of the script failed".into())),
+        n => Err(Fault::Usage(format!("{n} lines of the script failed"))),
+    }
+}
+
+/// Opens a file of any kind as a scene.
+fn open(path: &Path) -> Result<Document, Fault> {
+    if let Err(why) = std::fs::File::open(path) {
+        return Err(Fault::Unreadable(format!("{} could not be read: {why}", path.display())));
+    }
+    let wrong = |why: hairspring_app::AppError| match Format::of(path) {
+        Some(Format::TfxBone) | None => Fault::Usage(why.to_string()),
+        Some(_) => Fault::Content(why.to_string()),
+    };
+    Document::open_any(path, None).map_err(wrong)
 }
 
 /// Runs without a command: opens the window if possible. Otherwise it prints one sentence and writes the

@@ -8,6 +8,7 @@
 
 mod bytes;
 mod error;
+mod frame_writer;
 mod load;
 mod motion;
 mod observe;
@@ -32,6 +33,7 @@ pub mod tfxmesh;
 pub mod usc;
 
 pub use error::{Error, ErrorKind, Place, Problem, Result};
+pub use frame_writer::{FrameError, FrameWriter};
 pub use gltf::Character;
 pub use load::{Format, Loaded, read_body, read_bones, read_groom, read_motion};
 pub use motion::Motion;

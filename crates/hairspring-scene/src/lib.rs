@@ -30,6 +30,8 @@ use hairspring::{
 /// One hairstyle of a scene, with its settings for simulation and rendering.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SceneGroom {
+    /// Name shown in lists; it may be empty.
+    pub name: String,
     /// The strands, in the rest pose of the body [m].
     pub groom: Groom,
     /// Material of each group; groups beyond the end use the last one. Empty: [`Material::default`].

@@ -28,6 +28,9 @@ impl App {
         if pressed(Modifiers::NONE, Key::ArrowRight) && !self.session.playing() {
             actions.push(Action::Step);
         }
+        if pressed(Modifiers::NONE, Key::ArrowLeft) && !self.session.playing() {
+            actions.extend(self.frame_before().map(Action::Seek));
+        }
         if pressed(Modifiers::NONE, Key::R) {
             actions.push(Action::Reset);
         }
@@ -66,6 +69,12 @@ impl App {
         }
     }
 
+    /// The cached frame before the one that is shown.
+    fn frame_before(&self) -> Option<u64> {
+        let snapshot = self.session.latest()?;
+        snapshot.cached.frames.iter().rev().find(|frame| **frame < snapshot.frame).copied()
+    }
+
     fn save(&mut self, actions: &mut Vec<Action>) {
         match self.session.document().file() {
             Some(_) => actions.push(Action::Save(None)),
@@ -88,6 +97,13 @@ impl App {
                 }
                 if ui.button("Save as…").clicked() {
                     self.files.ask(For::Save, self.session.document().file());
+                }
+                ui.separator();
+                if ui.button("Export hair…").clicked() {
+                    self.files.ask(For::Export, None);
+                }
+                if ui.button("Bake…").clicked() {
+                    self.files.ask_for_bake(self.session.length());
                 }
                 ui.separator();
                 if ui.button("Quit").clicked() {

@@ -1,12 +1,14 @@
 //! The window: panels around the picture, keys, dropped files, and scripts.
 
 mod keys;
+mod leave;
 mod picture;
 mod scripted;
 mod status_overlay;
 
 use crate::{
     AppError,
+    bake::{self, BakeRequest, Baker},
     document::{Document, builtin_text},
     finger::Finger,
     memory,
@@ -15,17 +17,23 @@ use crate::{
         files::{Decision, Files},
         help, inspect, parameters,
         presets::Presets,
-        transport,
+        recovered, transport,
     },
     record::{RecordRequest, Recorder},
-    script::Line,
+    recovery::{self, FoundScene, Recovery},
+    script::Script,
     session::{Action, Session},
     view::View,
 };
 use eframe::egui::{self, Color32, Ui};
+use leave::Leaving;
 use std::{
-    collections::VecDeque,
-    sync::mpsc::Receiver,
+    path::{Path, PathBuf},
+    sync::{
+        Arc,
+        atomic::{AtomicUsize, Ordering::Relaxed},
+        mpsc::Receiver,
+    },
     time::{Duration, Instant},
 };
 
@@ -46,9 +54,13 @@ pub struct Options {
     /// The scene; `None` opens the built-in head.
     pub document: Option<Document>,
     /// The script to run.
-    pub script: VecDeque<Line>,
+    pub script: Script,
+    /// Counts the errors of the script.
+    pub script_errors: Arc<AtomicUsize>,
     /// The renderer for the hair.
     pub drawn: Drawn,
+    /// The folder where unsaved changes are kept for a crash; `None`: they are not kept.
+    pub recovery: Option<PathBuf>,
 }
 
 /// The state of the window.
@@ -62,8 +74,10 @@ pub struct App {
     filter: String,
     open: Open,
     recorder: Option<Recorder>,
+    baker: Option<Baker>,
     message: Option<(String, bool, Instant)>,
-    script: VecDeque<Line>,
+    script: Script,
+    script_errors: Arc<AtomicUsize>,
     /// The step that the script waits for.
     waits: u64,
     finger: Finger,
@@ -75,6 +89,14 @@ pub struct App {
     /// Number of hairs and guides of new scenes, matched to the speed of this machine.
     hairs: (u32, u32),
     drawn: Option<Instant>,
+    /// A question about unsaved changes.
+    leaving: Option<Leaving>,
+    /// Whether the window closes without a question.
+    closes: bool,
+    /// Keeps unsaved changes for a crash.
+    recovery: Option<Recovery>,
+    /// Scenes of windows that crashed, until the user decides on them.
+    found: Vec<FoundScene>,
 }
 
 impl App {
@@ -82,16 +104,21 @@ impl App {
     /// machine draws well.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> Result<Self, AppError> {
         memory::keep_little();
-        let Options { document, script, drawn } = options;
+        let Options { document, script, script_errors, drawn, recovery } = options;
         let ctx = creation.egui_ctx.clone();
         let painters = vec![Painter::new(creation, drawn)];
         let hairs = if painters[0].gpu().is_some() { (100_000, 2_000) } else { (8_000, 500) };
         let document = match document {
             Some(document) => document,
-            None => Document::new("scene.toml".as_ref(), builtin_text("wavy", hairs.0, hairs.1))?,
+            None => Document::new("scene.toml".as_ref(), builtin_text("wavy", Some(hairs)))?,
         };
         let session =
             Session::new(document, painters[0].spared(), painters[0].gpu(), painters[0].wake(&ctx))?;
+        let found = recovery.as_deref().map(recovery::find).unwrap_or_default();
+        let (recovery, unkept) = match recovery.as_deref().map(Recovery::new).transpose() {
+            Ok(recovery) => (recovery, None),
+            Err(why) => (None, Some((why.to_string(), true, Instant::now()))),
+        };
         ctx.set_theme(egui::Theme::Dark);
         // The window is already cleared with that color. Filling the panels again would take a software
         // driver as long as a picture.
@@ -106,8 +133,10 @@ impl App {
             filter: String::new(),
             open: Open { panels: true, graphs: false, presets: false, help: false },
             recorder: None,
-            message: None,
+            baker: None,
+            message: unkept,
             script,
+            script_errors,
             waits: 0,
             finger: Finger::new(&ctx),
             whole: egui::Rect::NOTHING,
@@ -115,6 +144,10 @@ impl App {
             shot: None,
             hairs,
             drawn: None,
+            leaving: None,
+            closes: false,
+            recovery,
+            found,
         })
     }
 
@@ -127,9 +160,15 @@ impl App {
     pub fn is_idle(&self) -> bool {
         self.script.is_empty()
             && self.recorder.is_none()
+            && self.baker.is_none()
             && self.finger.rests()
             && self.shot.is_none()
             && self.waits == 0
+    }
+
+    /// Number of errors that lines of the script caused.
+    pub fn script_errors(&self) -> usize {
+        self.script_errors.load(Relaxed)
     }
 
     /// The last message, and whether it was an error.
@@ -137,8 +176,14 @@ impl App {
         self.message.as_ref().map(|(text, wrong, _)| (text.as_str(), *wrong))
     }
 
+    /// Shows a message. An error that a line of the script causes is also printed with its place.
     fn say(&mut self, text: impl Into<String>, wrong: bool) {
-        self.message = Some((text.into(), wrong, Instant::now()));
+        let text = text.into();
+        if let Some(place) = self.script.place().filter(|_| wrong) {
+            eprintln!("error: {place}: {text}");
+            self.script_errors.fetch_add(1, Relaxed);
+        }
+        self.message = Some((text, wrong, Instant::now()));
     }
 
     fn act(&mut self, action: Action) {
@@ -155,6 +200,16 @@ impl App {
         }
     }
 
+    /// Keeps unsaved changes for a crash.
+    fn keep_changes(&mut self, ctx: &egui::Context) {
+        let Some(recovery) = &mut self.recovery else { return };
+        match recovery.keep(self.session.document()) {
+            Ok(Some(wait)) => ctx.request_repaint_after(wait),
+            Ok(None) => {}
+            Err(why) => self.say(why.to_string(), true),
+        }
+    }
+
     fn record(&mut self, ctx: &egui::Context, wish: RecordRequest) {
         let Some(snapshot) = self.session.latest() else { return };
         let wake = ctx.clone();
@@ -165,16 +220,55 @@ impl App {
         }
     }
 
+    /// Writes the hair of the current frame.
+    fn export(&mut self, path: &Path) {
+        let snapshot = self.session.latest();
+        let Some(stage) = snapshot.as_ref().and_then(|snapshot| snapshot.stages.first()) else { return };
+        match bake::export(path, stage) {
+            Ok(said) => self.say(said, false),
+            Err(why) => self.say(why.to_string(), true),
+        }
+    }
+
+    /// Starts a bake, for which the scene pauses.
+    fn bake(&mut self, ctx: &egui::Context, request: BakeRequest) {
+        if self.baker.is_some() {
+            return self.say("a bake is running already: stop it, or wait for its end", true);
+        }
+        let wake = ctx.clone();
+        let (source, threads) = (self.session.document().source(), self.painters[0].spared());
+        match Baker::new(request, source, threads, move || wake.request_repaint()) {
+            Ok(baker) => {
+                self.act(Action::Play(false));
+                self.baker = Some(baker);
+            }
+            Err(why) => self.say(why.to_string(), true),
+        }
+    }
+
+    /// Receives the end of a bake.
+    fn hear_of_bake(&mut self) {
+        let Some(outcome) = self.baker.as_mut().and_then(Baker::outcome) else { return };
+        self.baker = None;
+        match outcome {
+            Ok(said) => self.say(said, false),
+            Err(why) => self.say(why.to_string(), true),
+        }
+    }
+
     fn windows(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         match self.files.show(ctx) {
-            Some(Decision::Do(action)) => self.act(action),
+            Some(Decision::Do(action)) => self.request(action),
             Some(Decision::Record(wish)) => self.record(ctx, wish),
+            Some(Decision::Export(path)) => self.export(&path),
+            Some(Decision::Bake(request)) => self.bake(ctx, request),
             None => {}
         }
         help::show(ctx, &mut self.open.help);
         let mut open = self.open.presets;
         self.presets.show(ctx, &mut open, self.hairs, actions);
         self.open.presets = open;
+        recovered::show(ctx, &mut self.found, actions);
         let dropped = ctx.input(|i| i.raw.dropped_files.clone());
         actions.extend(dropped.into_iter().map(|f| Action::Open(f.path().into())));
     }
@@ -190,17 +284,24 @@ impl eframe::App for App {
         let _ = frame;
         let snapshot = self.session.latest();
         let mut actions = Vec::new();
-        self.keys(ctx, &mut actions);
+        self.hold_back_close(ctx);
+        if self.leaving.is_none() {
+            self.keys(ctx, &mut actions);
+        }
         self.hear_of_shot();
+        self.hear_of_bake();
         self.follow_script(ctx, snapshot.as_ref());
         if let Some(why) = self.session.error() {
             self.say(why.to_string(), true);
         }
-        if self.session.is_dead() && self.message.is_none() {
-            self.say(
-                "the simulation stopped because of an internal error; save, and open the scene again",
-                true,
-            );
+        if let Some(why) = self.session.restart_if_dead() {
+            self.say(why.to_string(), true);
+            // The new thread counts steps from 0, so what waits for a step would wait for long.
+            self.waits = 0;
+            if let Some(recorder) = self.recorder.take() {
+                // The message above is about the same.
+                let _ = recorder.stop(&mut self.session);
+            }
         }
         if let Some(snapshot) = &snapshot {
             self.history.keep(snapshot);
@@ -233,7 +334,7 @@ impl eframe::App for App {
                 // Below the label of a side.
                 let below = egui::Rect::from_min_max(self.rect.min + egui::vec2(0.0, 22.0), self.rect.max);
                 status_overlay::corner(ctx, below, egui::Align2::LEFT_TOP, |ui| {
-                    inspect::picked(ui, snapshot, &mut actions)
+                    inspect::picked(ui, &self.session, snapshot, &mut actions)
                 });
             }
         }
@@ -248,8 +349,10 @@ impl eframe::App for App {
             ctx.request_repaint();
         }
         for action in actions {
-            self.act(action);
+            self.request(action);
         }
+        self.ask_before_leaving(ctx);
+        self.keep_changes(ctx);
         if let (Some(mut recorder), Some(snapshot)) = (self.recorder.take(), &snapshot) {
             let sights = snapshot.stages.iter().map_while(|s| self.view.sight(s, 1.0)).collect();
             let ended = recorder.advance(&mut self.session, snapshot, sights);

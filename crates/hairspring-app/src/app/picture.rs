@@ -7,7 +7,7 @@ use crate::{
     session::Action,
     snapshot::Snapshot,
 };
-use eframe::egui::{self, Color32, Sense, Ui};
+use eframe::egui::{self, Sense, Ui};
 use hairspring_scene::stage::Value;
 use std::sync::Arc;
 
@@ -78,17 +78,10 @@ impl App {
                 picked,
             );
             if count > 1 {
-                painter.text(
-                    rect.left_top() + egui::vec2(10.0, 8.0),
-                    egui::Align2::LEFT_TOP,
-                    format!(
-                        "{} · {}",
-                        if k == 0 { "Left" } else { "Right" },
-                        self.session.captions()[k.min(1)]
-                    ),
-                    egui::FontId::proportional(16.0),
-                    Color32::from_white_alpha(200),
-                );
+                let side = if k == 0 { "Left" } else { "Right" };
+                let text = format!("{side} · {}", self.session.captions()[k.min(1)]);
+                let at = rect.left_top() + egui::vec2(10.0, 8.0);
+                status_overlay::text_on_picture(&painter, at, egui::Align2::LEFT_TOP, text, 16.0);
             }
             if let Some(value) = self.session.shown() {
                 status_overlay::legend(&painter, rect, value, &self.view, seen);

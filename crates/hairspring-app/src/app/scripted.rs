@@ -2,6 +2,7 @@
 
 use super::App;
 use crate::{
+    bake::BakeRequest,
     document::builtin_text,
     record::{RecordRequest, write},
     script::Line,
@@ -18,14 +19,14 @@ impl App {
     /// Executes the next lines of the script, as far as possible now.
     pub(super) fn follow_script(&mut self, ctx: &egui::Context, snapshot: Option<&Arc<Snapshot>>) {
         let Some(snapshot) = snapshot else { return };
-        if self.recorder.is_some() || !self.finger.rests() || self.shot.is_some() {
+        if self.recorder.is_some() || self.baker.is_some() || !self.finger.rests() || self.shot.is_some() {
             return;
         }
         if snapshot.scene < self.session.begun() || snapshot.step < self.waits {
             return;
         }
         self.waits = 0;
-        let Some(line) = self.script.pop_front() else { return };
+        let Some(line) = self.script.begin_next() else { return };
         match line {
             Line::Wait(steps) => {
                 self.waits = snapshot.step + steps;
@@ -36,6 +37,8 @@ impl App {
             Line::Play(on) => self.act(Action::Play(on)),
             Line::Step => self.act(Action::Step),
             Line::Reset => self.act(Action::Reset),
+            Line::Seek(frame) => self.act(Action::Seek(frame)),
+            Line::Range(range) => self.act(Action::Range(range)),
             Line::Speed(speed) => self.act(Action::Speed(speed)),
             Line::Set(key, value) => {
                 self.act(Action::Set(key, value));
@@ -43,7 +46,7 @@ impl App {
             }
             Line::Undo => self.act(Action::Undo),
             Line::Redo => self.act(Action::Redo),
-            Line::New(style) => self.act(Action::New(builtin_text(&style, self.hairs.0, self.hairs.1))),
+            Line::New(style) => self.act(Action::New(builtin_text(&style, Some(self.hairs)))),
             Line::Open(path) => self.act(Action::Open(path)),
             Line::Save(path) => self.act(Action::Save(Some(path))),
             Line::Hand(hand) => self.view.hand = hand,
@@ -55,13 +58,22 @@ impl App {
             Line::Release => self.finger.release(),
             Line::Find(text) => self.filter = text,
             Line::Show(value) => self.act(Action::Show(value)),
-            Line::Switch(name, on) => self.switch(&name, on),
-            Line::Record(kind, path, seconds) => self.record(ctx, RecordRequest { kind, path, seconds }),
+            Line::Switch(name, on) => self.switch(name, on),
+            Line::Record(kind, path, seconds) => {
+                let format = self.files.format;
+                self.record(ctx, RecordRequest { kind, path, seconds, format });
+            }
+            Line::Size(size) => self.files.format.size = size,
+            Line::Rate(rate) => self.files.format.rate = rate,
+            Line::Export(path) => self.export(&path),
+            Line::Bake(path, frames) => {
+                self.bake(ctx, BakeRequest { path, frames, rate: self.files.format.rate });
+            }
             // Waits for the full-quality picture of a paused scene, which comes soon.
             Line::Shot(path)
                 if !self.session.playing() && !self.painters.iter().all(|p| p.is_whole(snapshot)) =>
             {
-                self.script.push_front(Line::Shot(path));
+                self.script.wait_for(Line::Shot(path));
                 return ctx.request_repaint_after(Duration::from_millis(50));
             }
             Line::Shot(path) => {
@@ -81,7 +93,7 @@ impl App {
                     1e3 * snapshot.took.as_secs_f32()
                 );
             }
-            Line::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Line::Quit => self.close(ctx),
         }
         ctx.request_repaint_after(Duration::from_millis(1));
     }

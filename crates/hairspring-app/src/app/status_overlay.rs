@@ -13,21 +13,43 @@ const LEGEND: f32 = 190.0;
 impl App {
     /// Shows the progress of a recording, and the last message.
     pub(super) fn tell(&mut self, ctx: &egui::Context) {
+        let corner = self.whole.min + egui::vec2(20.0, 40.0);
         if let Some(recorder) = &self.recorder {
             let (done, all) = recorder.progress();
             let mut stopped = false;
-            egui::Window::new("Recording").collapsible(false).resizable(false).show(ctx, |ui| {
-                ui.add(
-                    egui::ProgressBar::new(done as f32 / all as f32).text(format!("{done} of {all} frames")),
-                );
-                stopped = ui.button("Stop").clicked();
-            });
+            egui::Window::new("Recording").default_pos(corner).collapsible(false).resizable(false).show(
+                ctx,
+                |ui| {
+                    ui.add(
+                        egui::ProgressBar::new(done as f32 / all as f32)
+                            .text(format!("{done} of {all} frames")),
+                    );
+                    stopped = ui.button("Stop").clicked();
+                },
+            );
             if stopped && let Some(recorder) = self.recorder.take() {
                 match recorder.stop(&mut self.session) {
                     Ok(said) => self.say(said, false),
                     Err(why) => self.say(why.to_string(), true),
                 }
             }
+        }
+        if let Some(baker) = &self.baker {
+            let (done, all) = baker.progress();
+            egui::Window::new("Baking").default_pos(corner).collapsible(false).resizable(false).show(
+                ctx,
+                |ui| {
+                    let done_so_far = format!("{done} of {all} frames");
+                    ui.add(egui::ProgressBar::new(done as f32 / all as f32).text(done_so_far));
+                    if ui
+                        .button("Stop")
+                        .on_hover_text("After the current frame; finished files stay")
+                        .clicked()
+                    {
+                        baker.cancel();
+                    }
+                },
+            );
         }
         let Some((text, wrong, since)) = &self.message else { return };
         if since.elapsed() > MESSAGE {
@@ -56,6 +78,24 @@ impl App {
     }
 }
 
+/// Color behind text on the picture, so that it can be read on any background.
+const BEHIND: Color32 = Color32::from_black_alpha(205);
+
+/// Draws text on the picture, readable on any background.
+pub(super) fn text_on_picture(
+    painter: &egui::Painter,
+    at: egui::Pos2,
+    align: egui::Align2,
+    text: String,
+    size: f32,
+) {
+    let white = Color32::from_gray(235);
+    let galley = painter.layout_no_wrap(text, egui::FontId::proportional(size), white);
+    let rect = align.anchor_size(at, galley.size());
+    painter.rect_filled(rect.expand2(egui::vec2(4.0, 1.0)), 3.0, BEHIND);
+    painter.galley(rect.min, galley, white);
+}
+
 /// Shows text in a corner of the picture, on the left.
 pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2, show: impl FnOnce(&mut Ui)) {
     let inside = rect.shrink2(egui::vec2(10.0, 10.0));
@@ -66,11 +106,12 @@ pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2,
             ui.style_mut().interaction.selectable_labels = false;
             // Keeps a figure on the line of its name.
             ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-            egui::Frame::new()
-                .fill(Color32::from_black_alpha(120))
-                .corner_radius(4.0)
-                .inner_margin(6.0)
-                .show(ui, show);
+            egui::Frame::new().fill(BEHIND).corner_radius(4.0).inner_margin(6.0).show(ui, |ui| {
+                let visuals = ui.visuals_mut();
+                visuals.override_text_color = Some(Color32::from_gray(235));
+                visuals.weak_text_color = Some(Color32::from_gray(200));
+                show(ui);
+            });
         });
 }
 
@@ -84,7 +125,7 @@ pub(super) fn legend(
 ) {
     let at = rect.right_top() + egui::vec2(-LEGEND, 14.0);
     let text = |place: egui::Pos2, align, text: String| {
-        painter.text(place, align, text, egui::FontId::proportional(13.0), Color32::from_white_alpha(220));
+        text_on_picture(painter, place, align, text, 13.0);
     };
     let unit = match value.unit() {
         "1" => "",

@@ -4,6 +4,7 @@ use super::{Document, parsed, table};
 use crate::{
     AppError,
     destination::{destination, settled},
+    recovery::KeptScene,
 };
 use hairspring_io::atomically;
 use std::path::{Path, PathBuf};
@@ -34,6 +35,17 @@ impl Document {
         let mut edited = parsed(self.text())?;
         edited.remove("clip");
         Ok(format!("{}\n\n[clip]\nfile = {file}\n", edited.to_string().trim_end()))
+    }
+
+    /// The scene as it is kept for a crash.
+    pub fn kept(&self) -> KeptScene {
+        KeptScene { path: settled(&self.path), on_disk: self.on_disk, text: self.text().to_owned() }
+    }
+
+    /// Opens a scene that was kept for a crash. It has unsaved changes.
+    pub fn recovered(scene: &KeptScene) -> Result<Self, AppError> {
+        let document = Self::new(&scene.path, scene.text.clone())?;
+        Ok(Self { on_disk: scene.on_disk, ..document.never_saved() })
     }
 
     /// Writes the text to a file, atomically. If the folder changes, the paths of named files are adjusted,

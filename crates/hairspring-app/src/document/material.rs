@@ -84,6 +84,14 @@ impl Document {
         }
     }
 
+    /// Name of groom `groom`. Grooms with the same name are numbered.
+    pub fn groom_name(&self, groom: usize) -> String {
+        let grooms = &self.settings.grooms;
+        let Some(name) = grooms.get(groom).map(|groom| &groom.name) else { return String::new() };
+        let same = |until: usize| grooms[..until].iter().filter(|groom| groom.name == *name).count();
+        if same(grooms.len()) > 1 { format!("{name} {}", same(groom + 1)) } else { name.clone() }
+    }
+
     /// The grooms that are in the text.
     pub fn grooms(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.settings.grooms.len()).filter(|g| self.groom_key(*g).is_some())
@@ -99,4 +107,18 @@ fn implicit() -> Table {
     let mut table = Table::new();
     table.set_implicit(true);
     table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn grooms_are_named_after_their_files_and_numbered_if_names_repeat() {
+        let text = "[builtin]\nstrands = 5\n[[groom]]\nfile = \"a/tail.hair\"\n[[groom]]\nfile = \"tail.tfx\"\n\
+            [[groom]]\nname = \"Fringe\"\n[groom.grow]\nstrands = 5\n[[groom]]\n[groom.grow]\nstrands = 5\n";
+        let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
+        let names: Vec<String> = (0..6).map(|g| document.groom_name(g)).collect();
+        assert_eq!(names, ["Head hair", "Brows and lashes", "tail 1", "tail 2", "Fringe", "Grown hair"]);
+    }
 }

@@ -7,8 +7,10 @@
 mod files;
 mod history;
 mod material;
+mod open;
 
 pub use history::Way;
+pub use open::{KINDS, new_scene, replaces_scene};
 
 use crate::{defaults::Reference, effective::effective, error::AppError, key::Key};
 use hairspring_io::{Loaded, read_scene_text, read_settings, same_geometry};
@@ -17,11 +19,11 @@ use history::{Draft, History};
 use std::path::{Path, PathBuf};
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
 
-/// The text of the window's initial scene: the built-in head with the given number of hairs.
-pub fn builtin_text(style: &str, strands: u32, guides: u32) -> String {
-    format!(
-        "name = \"Built-in head\"\n\n[builtin]\nstyle = \"{style}\"\nstrands = {strands}\nguides = {guides}\n"
-    )
+/// The text of the window's initial scene: the built-in head, with the given numbers of hairs and guides.
+pub fn builtin_text(style: &str, hairs: Option<(u32, u32)>) -> String {
+    let hairs =
+        hairs.map_or(String::new(), |(strands, guides)| format!("strands = {strands}\nguides = {guides}\n"));
+    format!("name = \"Built-in head\"\n\n[builtin]\nstyle = \"{style}\"\n{hairs}")
 }
 
 /// Writes `value` at `key` in the text of a scene file, such as `solver.substeps` or `groom[0].look.roughness`.

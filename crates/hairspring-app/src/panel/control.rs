@@ -1,6 +1,6 @@
 //! The widget of a parameter: a slider, a switch, a choice, a color, a direction.
 
-use super::Labelled;
+use super::{Labelled, TipBeside};
 use crate::parameter::{Kind, Parameter};
 use eframe::egui::{self, DragValue, Slider, Ui};
 use std::ops::RangeInclusive;
@@ -135,7 +135,7 @@ pub fn control(
             for (axis, x) in ["x", "y", "z"].into_iter().zip(&mut vector) {
                 let drag = DragValue::new(x).speed(reach / 200.0).range(-reach..=reach).max_decimals(2);
                 let drag = drag.custom_formatter(plain);
-                let drag = ui.add(drag).on_hover_text(format!("{axis} [{}]", parameter.unit()));
+                let drag = ui.add(drag).tip_beside(ui, &format!("{axis} [{}]", parameter.unit()));
                 changed |= drag.changed();
             }
             if !parameter.unit().is_empty() {
@@ -157,12 +157,12 @@ pub fn control(
                 let weight = DragValue::new(x).speed(0.02).range(0.01..=100.0).max_decimals(2);
                 changed |= ui.add(weight).labelled(ui, name).changed();
             }
-            if profile.len() < 8 && ui.small_button("+").on_hover_text("Add a weight at the tip").clicked() {
+            if profile.len() < 8 && ui.small_button("+").tip_beside(ui, "Add a weight at the tip").clicked() {
                 profile.push(profile.last().copied().unwrap_or(1.0));
                 changed = true;
             }
             if profile.len() > 1
-                && ui.small_button("-").on_hover_text("Remove the weight at the tip").clicked()
+                && ui.small_button("-").tip_beside(ui, "Remove the weight at the tip").clicked()
             {
                 profile.pop();
                 changed = true;

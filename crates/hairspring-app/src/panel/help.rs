@@ -4,9 +4,10 @@ use crate::view::Hand;
 use eframe::egui;
 
 /// Keys and their functions.
-const KEYS: [(&str, &str); 15] = [
+const KEYS: [(&str, &str); 16] = [
     ("Space", "play or pause"),
     ("Right", "a step, while paused"),
+    ("Left", "the cached frame before, while paused"),
     ("R", "reset to time 0"),
     ("F", "look at all hair"),
     ("C", "compare two settings on the same motion"),

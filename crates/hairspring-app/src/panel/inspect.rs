@@ -145,10 +145,11 @@ pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) 
 }
 
 /// Shows the figures of the picked strand.
-pub fn picked(ui: &mut Ui, snapshot: &Snapshot, actions: &mut Vec<Action>) {
+pub fn picked(ui: &mut Ui, session: &Session, snapshot: &Snapshot, actions: &mut Vec<Action>) {
     let Some((picked, figures)) = &snapshot.picked else { return };
     ui.horizontal(|ui| {
-        ui.strong(format!("Strand {} of groom {}", picked.strand, picked.groom + 1));
+        let groom = session.document().groom_name(picked.groom);
+        ui.strong(format!("Strand {} of {groom}", picked.strand));
         if ui.small_button("Forget").clicked() {
             actions.push(Action::Unpick);
         }

@@ -1,6 +1,7 @@
 //! Lists of keys as rows: a time and the values at that time, each with its unit. Rows can be added and
 //! removed.
 
+use super::TipBeside;
 use crate::{
     field::{self, Field, Keys, of},
     key::Key,
@@ -131,12 +132,12 @@ pub fn show(
             ui.horizontal(|ui| {
                 ui.label(format!("{}", k + 1));
                 first_line.iter().for_each(|column| cell(ui, *column, actions));
-                if ui.small_button("+").on_hover_text("Adds a key after this one").clicked() {
+                if ui.small_button("+").tip_beside(ui, "Adds a key after this one").clicked() {
                     let mut rows = rows.clone();
                     rows.insert(k + 1, keys.after(&rows, k));
                     actions.push(all(&rows));
                 }
-                if ui.small_button("-").on_hover_text("Removes this key").clicked() {
+                if ui.small_button("-").tip_beside(ui, "Removes this key").clicked() {
                     let mut rows = rows.clone();
                     rows.remove(k);
                     let left = !rows.is_empty();
@@ -152,7 +153,7 @@ pub fn show(
             }
         });
     }
-    if rows.is_empty() && ui.small_button("Add a key").on_hover_text(field::tip(field, key)).clicked() {
+    if rows.is_empty() && ui.small_button("Add a key").tip_beside(ui, &field::tip(field, key)).clicked() {
         actions.push(all(&[first.to_vec()]));
     }
 }
@@ -187,7 +188,7 @@ fn edited(
         let name = if column == "time" { "Time" } else { axes[axis % 3] };
         let drag = DragValue::new(&mut shown).speed(speed).range(low..=high).max_decimals(3);
         let drag = if column == "time" { drag.suffix(" s") } else { drag };
-        let response = ui.add(drag).on_hover_text(format!("{name} [{unit}]: {tip}"));
+        let response = ui.add(drag).tip_beside(ui, &format!("{name} [{unit}]: {tip}"));
         if slow && !rests(&response) {
             if response.changed() {
                 ui.data_mut(|d| d.insert_temp(id, shown));

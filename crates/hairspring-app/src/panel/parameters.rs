@@ -1,6 +1,9 @@
 //! All parameters as widgets with unit, range, tooltip and reset button, grouped by artistic purpose.
 
-use super::control::{VALUE, as_number, control};
+use super::{
+    TipBeside,
+    control::{VALUE, as_number, control},
+};
 use crate::{
     edit,
     key::Key,
@@ -91,7 +94,7 @@ const TAKE_VIEW: &str = "Use the current view";
 fn take_view(ui: &mut Ui, camera: Option<Camera>, actions: &mut Vec<Action>) {
     let Some(camera) = camera else { return };
     let button = ui.small_button(TAKE_VIEW);
-    if button.on_hover_text("Sets the scene's camera to the window's current view.").clicked() {
+    if button.tip_beside(ui, "Sets the scene's camera to the window's current view.").clicked() {
         let key = Key::top("camera");
         // Rounds to a tenth of a millimeter, which is sufficient.
         let tidy = |x: f32| (f64::from(x) * 1e4).round() / 1e4;
@@ -133,9 +136,9 @@ fn choose(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         });
     }
     if grooms.len() > 1 || groups > 1 {
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             for g in grooms.iter().filter(|_| grooms.len() > 1) {
-                if ui.selectable_label(*g == groom, format!("Groom {}", g + 1)).clicked() {
+                if ui.selectable_label(*g == groom, document.groom_name(*g)).clicked() {
                     actions.push(Action::Choose(*g, 0));
                 }
             }
@@ -181,9 +184,7 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
             let left = egui::Layout::left_to_right(egui::Align::Center);
             ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
                 ui.set_min_width(LABEL);
-                ui.add_enabled(idle.is_none(), egui::Label::new(name).truncate())
-                    .on_hover_text(&tip)
-                    .on_disabled_hover_text(&tip);
+                ui.add_enabled(idle.is_none(), egui::Label::new(name).truncate()).tip_beside(ui, &tip);
             });
             let room = (ui.available_width() - RESET - ui.spacing().item_spacing.x).max(VALUE);
             ui.allocate_ui_with_layout(egui::vec2(room, 18.0), left.with_main_wrap(true), |ui| {
@@ -192,14 +193,14 @@ fn row(ui: &mut Ui, session: &Session, parameter: &'static Parameter, actions: &
                 ui.add_enabled_ui(idle.is_none(), |ui| {
                     let response = control(ui, parameter, now, listed, &mut |value| edited = Some(value));
                     if let Some(response) = response {
-                        response.on_hover_text(&tip).on_disabled_hover_text(&tip);
+                        response.tip_beside(ui, &tip);
                     }
                 });
             });
             if changed {
                 ui.spacing_mut().button_padding.x = 3.0;
                 let back = ui.add(egui::Button::new("reset").small().truncate());
-                if back.on_hover_text("Back to how the scene was opened").clicked() {
+                if back.tip_beside(ui, "Back to how the scene was opened").clicked() {
                     edited = Some(edit::reset(document, parameter, chosen));
                 }
             }

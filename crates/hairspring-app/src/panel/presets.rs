@@ -34,7 +34,7 @@ pub(super) const PRESETS: [(&str, &str, &str); 8] = [
 /// The text of a preset.
 pub(super) fn text(k: usize, hairs: u32, guides: u32) -> String {
     let (name, style, more) = PRESETS[k];
-    let text = builtin_text(style, hairs, guides).replace("Built-in head", name);
+    let text = builtin_text(style, Some((hairs, guides))).replace("Built-in head", name);
     format!("{text}{more}")
 }
 

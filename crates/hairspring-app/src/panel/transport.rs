@@ -28,12 +28,6 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
         if ui.add(slider.text("Speed")).on_hover_text("Seconds of the scene in a second: slow motion").changed() {
             actions.push(Action::Speed(speed));
         }
-        if session.length().is_some() {
-            let mut repeat = session.repeats();
-            if ui.checkbox(&mut repeat, "Repeat").on_hover_text("Restart at the end of the motion").changed() {
-                actions.push(Action::Repeat(repeat));
-            }
-        }
         ui.separator();
         if let Some(snapshot) = snapshot {
             let took = snapshot.took.as_secs_f32();
@@ -49,6 +43,9 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
             ui.weak(pace).on_hover_text("How long a step of 1/60 s takes. Where it takes longer, time runs slower; nothing is left out.");
         }
     });
+    if let Some(snapshot) = snapshot {
+        super::timeline::show(ui, session, snapshot, actions);
+    }
 }
 
 /// Tools, color ramp and overlays.

@@ -1,8 +1,11 @@
 //! Runs the simulation on its own thread with a fixed time step. The picture never waits for it, and the
 //! hair's motion does not depend on the frame rate.
 
+mod frames;
 mod publish;
 mod work;
+
+pub use frames::CachedFrames;
 
 use crate::{drag_limiter::Push, error::AppError, snapshot::Snapshot};
 use glam::Vec3;
@@ -36,14 +39,16 @@ pub enum Order {
     Retune(Box<Scene>, Option<Box<Scene>>),
     /// Plays or pauses.
     Play(bool),
-    /// Advances by one step.
-    Step,
+    /// Advances by one step at this rate.
+    Step(FrameRate),
     /// Returns to time 0.
     Reset,
     /// Playback speed in scene seconds per second, above 0.
     Speed(f32),
-    /// Restarts after this time [s]; `None` plays on.
-    Loop(Option<f64>),
+    /// Goes back to the first of these frames after the last; `None` plays on.
+    Loop(Option<(u64, u64)>),
+    /// Goes to the kept frame that is nearest to this one.
+    Seek(u64),
     /// Adds a tool, which follows every `Carry`.
     Take(Manipulator, RigidTransform),
     /// Moves the tool.
@@ -58,6 +63,9 @@ pub enum Order {
     Show(Option<Value>),
     /// Picks the strand on a ray; `None` clears the selection.
     Pick(Option<(Vec3, Vec3)>),
+    /// Ends the thread by a panic, as an internal error would.
+    #[cfg(test)]
+    Panic,
 }
 
 /// State shared by the window and the thread.
@@ -86,13 +94,13 @@ impl Player {
     /// threads of a step. It should be less than the number of processors if another pool draws, because each
     /// parallel section of a step would otherwise wait for a thread that has no processor. Follow hairs are
     /// interpolated by the renderer: on the GPU `card` if it supports them, or for the picture of the CPU,
-    /// which does not need all of them.
-    pub fn new(threads: usize, card: Option<Gpu>, wake: impl Fn() + Send + 'static) -> Self {
+    /// which does not need all of them. `scene` is the number of scenes that were opened before.
+    pub fn new(threads: usize, card: Option<Gpu>, scene: u64, wake: impl Fn() + Send + 'static) -> Self {
         let (orders, inbox) = channel();
         let shared = Arc::new(Shared::default());
         let own = shared.clone();
         let thread = std::thread::Builder::new().name("simulation".into()).spawn(move || {
-            let mut work = Work { inbox, shared: own, card, wake: Box::new(wake), ..Work::new() };
+            let mut work = Work { inbox, shared: own, card, wake: Box::new(wake), scene, ..Work::new() };
             match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => pool.install(|| work.run()),
                 // Falls back to the global thread pool.
@@ -124,6 +132,18 @@ impl Player {
     /// Whether the thread has ended by itself.
     pub fn is_dead(&self) -> bool {
         self.thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
+    /// If the thread has ended by itself, the reason in words.
+    pub fn failure(&mut self) -> Option<String> {
+        if !self.is_dead() {
+            return None;
+        }
+        let panic = self.thread.take().and_then(|thread| thread.join().err());
+        let what = panic.as_ref().and_then(|panic| {
+            panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied())
+        });
+        Some(what.unwrap_or("no reason given").replace('\n', " "))
     }
 }
 

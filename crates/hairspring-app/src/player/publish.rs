@@ -1,6 +1,6 @@
 //! Publishes snapshots for the window, and reuses their memory.
 
-use super::{lock, work::Work};
+use super::{CachedFrames, lock, work::Work};
 use crate::{
     drag_limiter::Pushing,
     snapshot::{Snapshot, StageSnapshot, Still},
@@ -58,6 +58,8 @@ impl Work {
         let picked = self.picked;
         snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));
         (snapshot.step, snapshot.scene, snapshot.time) = (self.step, self.scene, first.time());
+        snapshot.frame = self.frame();
+        self.frames.list(&mut snapshot.cached);
         self.published += 1;
         snapshot.number = self.published;
         (snapshot.report, snapshot.took, snapshot.reset_strands) =
@@ -81,6 +83,8 @@ impl Work {
                 step: 0,
                 scene: 0,
                 time: 0.0,
+                frame: 0,
+                cached: CachedFrames::default(),
                 stages: Vec::new(),
                 report: FrameReport::default(),
                 took: Duration::ZERO,

@@ -1,6 +1,6 @@
 //! The loop of the thread: it executes commands between steps, and advances when a step is due.
 
-use super::{Order, RATE, STEP, Shared, lock};
+use super::{Order, RATE, STEP, Shared, frames::Frames, lock};
 use crate::{
     drag_limiter::{FASTEST, FASTEST_HEAD, Pulled, Pushing},
     error::AppError,
@@ -10,7 +10,7 @@ use crate::{
 use hairspring::simulation::{Energy, ManipulatorId, Measure};
 use hairspring_scene::{
     Scene,
-    stage::{FrameReport, Picked, PosedBody, Stage, Value},
+    stage::{FrameRate, FrameReport, Picked, PosedBody, Stage, Value},
 };
 use hairspring_view::gpu::Gpu;
 use std::{
@@ -38,7 +38,12 @@ pub(super) struct Work {
     pub(super) stages: Vec<(Stage, Arc<Still>)>,
     pub(super) playing: bool,
     pub(super) speed: f32,
-    pub(super) end: Option<f64>,
+    /// First and last frame of the loop.
+    pub(super) range: Option<(u64, u64)>,
+    pub(super) frames: Frames,
+    /// Whether the kept frames are not those that the scene would play by itself: a tool or another setting
+    /// changed the motion.
+    pub(super) touched: bool,
     pub(super) tool: Option<Vec<ManipulatorId>>,
     /// Poses of the body and of the tool, which follow the pointer.
     pub(super) body: Pulled,
@@ -78,7 +83,9 @@ impl Work {
             stages: Vec::new(),
             playing: false,
             speed: 1.0,
-            end: None,
+            range: None,
+            frames: Frames::default(),
+            touched: false,
             tool: None,
             body: Pulled::default(),
             carried: Pulled::default(),
@@ -130,7 +137,7 @@ impl Work {
                 }
                 Err(RecvTimeoutError::Timeout) if !idle => {
                     let began = Instant::now();
-                    self.advance();
+                    self.advance(RATE);
                     if self.shared.seen.load(Relaxed) || self.shown.elapsed() > SHOWN {
                         self.publish();
                     }
@@ -165,6 +172,9 @@ impl Work {
                         (self.tool, self.picked, self.unshown) = (None, None, false);
                         (self.body, self.pushing) = (Pulled::default(), None);
                         self.due = Instant::now();
+                        self.touched = false;
+                        self.frames.clear();
+                        self.keep();
                     }
                     Err(why) => *lock(&self.shared.error) = Some(why),
                 }
@@ -178,15 +188,18 @@ impl Work {
                         *lock(&self.shared.error) = Some(why.into());
                     }
                 }
+                self.touched = true;
+                self.frames.clear();
+                self.keep();
             }
             Order::Play(playing) => {
                 self.playing = playing;
                 self.due = Instant::now();
                 return false;
             }
-            Order::Step => {
+            Order::Step(rate) => {
                 let began = Instant::now();
-                self.advance();
+                self.advance(rate);
                 self.took = began.elapsed();
             }
             Order::Reset => self.reset(),
@@ -194,10 +207,11 @@ impl Work {
                 self.speed = speed.clamp(0.01, 10.0);
                 return false;
             }
-            Order::Loop(end) => {
-                self.end = end;
+            Order::Loop(range) => {
+                self.range = range;
                 return false;
             }
+            Order::Seek(frame) => return self.seek(frame),
             Order::Take(tool, pose) => {
                 self.let_go();
                 let mut taken = Vec::with_capacity(self.stages.len());
@@ -232,6 +246,8 @@ impl Work {
                 return false;
             }
             Order::Show(value) => self.show = value,
+            #[cfg(test)]
+            Order::Panic => panic!("a test wants it"),
             Order::Pick(ray) => {
                 self.show();
                 self.picked = ray.and_then(|(from, way)| self.stages.first()?.0.nearest_strand(from, way));
@@ -273,18 +289,69 @@ impl Work {
         self.stages.iter_mut().for_each(|(stage, _)| stage.set_user_colliders(shapes, pose));
     }
 
-    fn advance(&mut self) {
-        self.pull();
-        if self.end.is_some_and(|end| {
-            self.stages.first().is_some_and(|(s, _)| s.time() + 0.5 * f64::from(STEP) > end)
-        }) {
+    /// The frame that is shown, counted from 0 at time 0.
+    pub(super) fn frame(&self) -> u64 {
+        self.stages.first().map_or(0, |(stage, _)| (stage.time() / f64::from(STEP)).round() as u64)
+    }
+
+    /// Keeps the current frame for the timeline. A moment between two frames, as recordings at other rates have
+    /// them, is not kept.
+    fn keep(&mut self) {
+        let frame = self.frame();
+        let between = |(stage, _): &(Stage, _)| (stage.time() - RATE.time_of(frame)).abs() > 1e-4;
+        if !self.stages.iter().any(between) {
+            let held = (self.tool.as_deref(), self.body.now);
+            self.frames.keep(frame, self.stages.iter().map(|(stage, _)| stage), held);
+        }
+    }
+
+    /// Goes to the nearest kept frame. What the pointer holds is released.
+    fn seek(&mut self, frame: u64) -> bool {
+        let Some(kept) = self.frames.nearest(frame).and_then(|frame| self.frames.get(frame)) else {
+            return false;
+        };
+        self.tool = None;
+        for (k, ((stage, _), state)) in self.stages.iter_mut().zip(&kept.stages).enumerate() {
+            if stage.restore(state).is_err() {
+                return false;
+            }
+            if let Some(id) = kept.tool.as_ref().and_then(|tool| tool.get(k)) {
+                stage.remove_manipulator(*id);
+            }
+        }
+        self.body.now = kept.body;
+        self.unshown = false;
+        self.due = Instant::now();
+        true
+    }
+
+    /// Goes back to the first frame of the loop, or to the start if that is not kept.
+    fn go_back(&mut self, first: u64) {
+        let kept = self.frames.nearest(first) == Some(first) && !self.touched;
+        if first == 0 || !kept || !self.seek(first) {
             self.reset();
-            // It counts as a step. Otherwise a script that waits for steps would wait forever.
-            self.step += 1;
+        }
+        // It counts as a step. Otherwise a script that waits for steps would wait forever.
+        self.step += 1;
+    }
+
+    fn advance(&mut self, rate: FrameRate) {
+        self.pull();
+        let frame = self.frame();
+        if let Some((first, last)) = self.range
+            && frame >= last
+        {
+            self.go_back(first);
             return;
         }
+        let touches = self.tool.is_some() || self.pushing.is_some() || self.body.acts();
+        if self.touched || touches {
+            self.frames.forget_after(frame);
+            // From time 0 on, the scene plays by itself again.
+            self.touched = touches || frame > 0;
+        }
         for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
-            let report = stage.advance_frame(RATE);
+            let report = stage.advance_frame(rate);
             self.reset_strands += report.step.reset_strands;
             if k == 0 {
                 self.report = FrameReport { follow: self.report.follow, ..report };
@@ -292,6 +359,7 @@ impl Work {
         }
         self.unshown = true;
         self.step += 1;
+        self.keep();
     }
 }
 

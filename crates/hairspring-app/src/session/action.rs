@@ -1,6 +1,6 @@
 //! Actions of a user, a script or a random test.
 
-use crate::{drag_limiter::Push, key::Key, parameter::Parameter};
+use crate::{drag_limiter::Push, key::Key, parameter::Parameter, recovery::FoundScene};
 use glam::Vec3;
 use hairspring_scene::stage::Value;
 use std::path::PathBuf;
@@ -17,8 +17,12 @@ pub enum Action {
     Reset,
     /// Sets the playback speed in scene seconds per second.
     Speed(f32),
-    /// Sets whether the motion repeats.
+    /// Sets whether the motion, or its range, repeats.
     Repeat(bool),
+    /// Sets the first and the last frame of the loop, counted from 0 at time 0; `None`: the whole motion.
+    Range(Option<(u64, u64)>),
+    /// Pauses, and goes to the cached frame that is nearest to this one.
+    Seek(u64),
     /// Writes a parameter; `None` restores its default.
     Parameter(&'static Parameter, Option<Toml>),
     /// Writes a value by its key.
@@ -41,6 +45,8 @@ pub enum Action {
     New(String),
     /// Opens a scene, groom or body file.
     Open(PathBuf),
+    /// Opens a scene that was kept for a crash.
+    Recover(FoundScene),
     /// Saves the scene; `None` uses its current path.
     Save(Option<PathBuf>),
     /// Opens a second scene for comparison, which starts as a copy, or closes it.

@@ -2,15 +2,16 @@
 //! a user, a script or a test is an [`Action`].
 
 mod action;
+mod restart;
 mod scene;
 
 pub use action::Action;
 
 use crate::{
     AppError, differ,
-    document::{Change, Document, Way},
+    document::{Change, Document, Way, new_scene, replaces_scene},
     edit,
-    player::{Order, Player},
+    player::{Order, Player, RATE},
     reading::Reading,
     snapshot::Snapshot,
 };
@@ -19,9 +20,8 @@ use hairspring::{
     forces::{Manipulator, comb::Comb, grab::Grab},
     math::RigidTransform,
 };
-use hairspring_scene::stage::Value;
+use hairspring_scene::stage::{FrameRate, Value};
 use hairspring_view::gpu::Gpu;
-use scene::folder;
 use std::{
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
@@ -43,6 +43,8 @@ pub struct Session {
     playing: bool,
     speed: f32,
     repeat: bool,
+    /// First and last frame of the loop, if the user chose them.
+    range: Option<(u64, u64)>,
     show: Option<Value>,
     chosen: (usize, usize),
     held: bool,
@@ -59,7 +61,10 @@ pub struct Session {
     /// The scene that is being read and will be started next.
     reading: Option<Reading>,
     threads: usize,
+    card: Option<Gpu>,
     wake: Wake,
+    /// Whether the simulation ended while it started the scene. It starts again after the next change.
+    stopped: bool,
 }
 
 /// The function that is called when there is something new to show.
@@ -67,6 +72,11 @@ type Wake = Arc<Mutex<dyn Fn() + Send>>;
 
 fn rouse(wake: &Wake) {
     wake.lock().unwrap_or_else(PoisonError::into_inner)();
+}
+
+fn new_player(threads: usize, card: Option<Gpu>, scene: u64, wake: &Wake) -> Player {
+    let wake = wake.clone();
+    Player::new(threads, card, scene, move || rouse(&wake))
 }
 
 impl Session {
@@ -79,10 +89,7 @@ impl Session {
         wake: impl Fn() + Send + 'static,
     ) -> Result<Self, AppError> {
         let wake: Wake = Arc::new(Mutex::new(wake));
-        let player = Player::new(threads, card, {
-            let wake = wake.clone();
-            move || rouse(&wake)
-        });
+        let player = new_player(threads, card.clone(), 0, &wake);
         let mut session = Self {
             document,
             before: Vec::new(),
@@ -94,6 +101,7 @@ impl Session {
             playing: true,
             speed: 1.0,
             repeat: true,
+            range: None,
             show: None,
             chosen: (0, 0),
             held: false,
@@ -104,7 +112,9 @@ impl Session {
             begun: 0,
             reading: None,
             threads,
+            card,
             wake,
+            stopped: false,
         };
         session.begin()?;
         session.player.tell(Order::Play(true));
@@ -118,7 +128,7 @@ impl Session {
                 self.playing = playing;
                 self.player.tell(Order::Play(playing));
             }
-            Action::Step => self.player.tell(Order::Step),
+            Action::Step => self.step_at(RATE),
             Action::Reset => {
                 self.held = false;
                 self.player.tell(Order::Reset);
@@ -129,7 +139,16 @@ impl Session {
             }
             Action::Repeat(repeat) => {
                 self.repeat = repeat;
-                self.tell_length();
+                self.tell_range();
+            }
+            Action::Range(range) => {
+                self.range = range.filter(|(first, last)| first < last);
+                self.tell_range();
+            }
+            Action::Seek(frame) => {
+                (self.held, self.playing) = (false, false);
+                self.player.tell(Order::Play(false));
+                self.player.tell(Order::Seek(frame));
             }
             Action::Parameter(parameter, value) => {
                 let chosen = self.chosen;
@@ -158,8 +177,12 @@ impl Session {
             Action::Undo => self.step(Way::Back)?,
             Action::Redo => self.step(Way::Forth)?,
             Action::Choose(groom, group) => self.chosen = (groom, group),
-            Action::New(text) => self.take(Document::new(&folder().join("scene.toml"), text)?)?,
-            Action::Open(path) => self.open(&path)?,
+            Action::New(text) => self.take(Document::new(&new_scene(), text)?)?,
+            Action::Open(path) => self.take(Document::open_any(&path, Some(&self.document))?)?,
+            Action::Recover(found) => {
+                self.take(Document::recovered(&found.scene)?)?;
+                found.discard();
+            }
             Action::Save(path) => {
                 let known = self.document.file().map(PathBuf::from);
                 let path = path.or(known).ok_or_else(|| {
@@ -168,8 +191,9 @@ impl Session {
                 self.document.save(&path)?;
             }
             Action::Compare(on) => {
-                self.second =
-                    on.then(|| Document::new(&self.base(), self.document.text().to_owned())).transpose()?;
+                self.second = on
+                    .then(|| Document::new(&self.document.base(), self.document.text().to_owned()))
+                    .transpose()?;
                 self.on_second = on;
                 self.begin()?;
             }
@@ -211,8 +235,14 @@ impl Session {
         };
     }
 
-    fn tell_length(&self) {
-        self.player.tell(Order::Loop(self.length.filter(|_| self.repeat)));
+    fn tell_range(&self) {
+        let motion = self.last_frame().map(|last| (0, last));
+        self.player.tell(Order::Loop(self.range.or(motion).filter(|_| self.repeat)));
+    }
+
+    /// Advances by one step at this rate.
+    pub(crate) fn step_at(&self, rate: FrameRate) {
+        self.player.tell(Order::Step(rate));
     }
 
     /// A new edit clears the scenes for redo.
@@ -229,6 +259,7 @@ impl Session {
         match change {
             Change::None => {}
             Change::Geometry => self.begin_soon(),
+            Change::Settings if self.stopped => self.begin_soon(),
             Change::Settings => self.retune(),
         }
     }
@@ -245,6 +276,16 @@ impl Session {
 
     fn edited_mut(&mut self) -> &mut Document {
         self.second.as_mut().filter(|_| self.on_second).unwrap_or(&mut self.document)
+    }
+
+    /// Whether this action leaves a scene whose changes are not saved.
+    pub fn leaves_changes(&self, action: &Action) -> bool {
+        let leaves = match action {
+            Action::New(_) | Action::Recover(_) => true,
+            Action::Open(path) => replaces_scene(path),
+            _ => false,
+        };
+        leaves && self.document.is_changed()
     }
 
     /// The document that is saved.
@@ -314,9 +355,19 @@ impl Session {
         self.repeat
     }
 
+    /// First and last frame of the loop, if a range was chosen.
+    pub fn range(&self) -> Option<(u64, u64)> {
+        self.range
+    }
+
     /// Length of the scene's motion [s], if it has one.
     pub fn length(&self) -> Option<f64> {
         self.length
+    }
+
+    /// The last frame of the scene's motion, counted from 0 at time 0, if it has one.
+    pub fn last_frame(&self) -> Option<u64> {
+        self.length.map(|length| (length * RATE.hertz() - 0.5).ceil() as u64)
     }
 
     /// The value that colors show.

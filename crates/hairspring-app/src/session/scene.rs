@@ -3,12 +3,10 @@
 use super::{Session, rouse};
 use crate::{
     AppError,
-    destination::settled,
     document::{Document, Way},
     player::{Order, STEP},
     reading::{Read, Reading, both},
 };
-use std::path::PathBuf;
 
 /// Maximum number of scenes in the undo history. Only their texts are kept, not their hair.
 const MOST_SCENES: usize = 8;
@@ -17,36 +15,6 @@ const MOST_SCENES: usize = 8;
 type Scenes = fn(&mut Session) -> &mut Vec<Document>;
 
 impl Session {
-    /// Opens a file: a scene, a groom or a body. A groom or a body gets a scene of its own, or replaces that
-    /// of the open scene.
-    pub(super) fn open(&mut self, path: &std::path::Path) -> Result<(), AppError> {
-        let extension = path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default();
-        let whole = settled(path);
-        let name = toml::Value::String(whole.to_string_lossy().into_owned());
-        let document = match extension.as_str() {
-            "toml" => Document::open(&whole)?,
-            "hair" | "tfx" | "data" => {
-                let text = format!("[[groom]]\nfile = {name}\nmaterial = \"wavy\"\n");
-                Document::new(&folder().join("scene.toml"), text)?
-            }
-            "obj" | "glb" | "gltf" | "tfxmesh" => {
-                let text = self.document.with_body(&name.to_string())?;
-                Document::new(&self.base(), text)?
-            }
-            "bvh" => {
-                let text = self.document.with_motion(&name.to_string())?;
-                Document::new(&self.base(), text)?
-            }
-            _ => {
-                return Err(AppError::new(format!(
-                    "{} is no scene (.toml), groom (.hair, .tfx, .data), body (.glb, .gltf, .obj, .tfxmesh) or motion (.bvh)",
-                    path.display()
-                )));
-            }
-        };
-        self.take(document)
-    }
-
     /// Changes to another document as an undo step, if its scene can be read.
     pub(super) fn take(&mut self, mut document: Document) -> Result<(), AppError> {
         self.change_with(&mut document)?;
@@ -68,6 +36,8 @@ impl Session {
         }
         self.on_second = false;
         self.chosen = (0, 0);
+        self.range = None;
+        self.tell_range();
         self.opened += 1;
         Ok(())
     }
@@ -92,11 +62,6 @@ impl Session {
         let change = self.edited_mut().step(way)?;
         self.follow(change);
         Ok(())
-    }
-
-    /// The path that named files are relative to.
-    pub(super) fn base(&self) -> PathBuf {
-        self.document.file().map_or_else(|| folder().join("scene.toml"), PathBuf::from)
     }
 
     /// Reads the scene and the compared one, and starts at time 0.
@@ -139,17 +104,12 @@ impl Session {
         self.notes = loaded.notes;
         let joints = loaded.value.body.iter().flat_map(|body| &body.joints);
         self.joints = joints.map(|joint| joint.name.clone()).collect();
-        self.held = false;
+        (self.held, self.stopped) = (false, false);
         self.begun += 1;
         self.player.tell(Order::Open(Box::new(loaded.value), second.map(|s| Box::new(s.value))));
-        self.tell_length();
+        self.tell_range();
         self.compare();
     }
-}
-
-/// The folder of scenes without a file.
-pub(super) fn folder() -> PathBuf {
-    std::env::current_dir().unwrap_or_default()
 }
 
 #[cfg(test)]

@@ -2,9 +2,9 @@
 #![allow(dead_code)] // Each test uses a part of this module.
 
 use egui_kittest::{Harness, TestRenderer};
-use hairspring_app::{App, Document, Drawn, Options, read_script};
+use hairspring_app::{App, Document, Drawn, Options, Script};
 use std::{
-    path::Path,
+    path::{Path, PathBuf},
     time::{Duration, Instant},
 };
 
@@ -23,11 +23,23 @@ impl TestRenderer for Blind {
 
 /// Opens the window on this scene, in a folder, with a script.
 pub fn window(folder: &Path, scene: &str, script: &str) -> Harness<'static, App> {
+    window_with(folder, scene, script, None)
+}
+
+/// Like [`window`], and keeps unsaved changes in the folder `recovery`.
+pub fn window_with(
+    folder: &Path,
+    scene: &str,
+    script: &str,
+    recovery: Option<PathBuf>,
+) -> Harness<'static, App> {
     let document = Document::new(&folder.join("scene.toml"), scene.into()).expect("the scene can be read");
     let options = Options {
         document: Some(document),
-        script: read_script(script).expect("the script can be read"),
+        script: Script::parse("script", script).expect("the script can be read"),
         drawn: Drawn::Cpu,
+        recovery,
+        ..Options::default()
     };
     Harness::builder()
         .with_size([960.0, 640.0])
@@ -54,4 +66,18 @@ pub fn sound(app: &App) -> bool {
     app.session()
         .latest()
         .is_none_or(|snapshot| snapshot.stages.iter().all(|s| s.points().flatten().all(|p| p.is_finite())))
+}
+
+/// A file that is dropped on the window.
+#[derive(Debug)]
+pub struct Dropped(pub PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|why| why.to_string())
+    }
 }

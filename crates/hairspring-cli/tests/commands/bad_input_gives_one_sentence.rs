@@ -41,6 +41,20 @@ fn missing_and_unknown_files() {
 }
 
 #[test]
+fn what_the_window_cannot_open_is_refused_before_it_opens() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    refuse(f, &["live", "no.toml"], 3, &["no.toml"]);
+    refuse(f, &["live", "--script", "no.txt"], 3, &["no.txt"]);
+    std::fs::write(f.join("hair.xyz"), "?").unwrap();
+    refuse(f, &["live", "hair.xyz"], 2, &["hair.xyz", ".toml", ".vrm"]);
+    std::fs::write(f.join("wrong.toml"), "[builtin]\nstrand = 3\n").unwrap();
+    refuse(f, &["live", "wrong.toml"], 4, &["wrong.toml", "strand"]);
+    std::fs::write(f.join("wrong.txt"), "play\n\nfly away\n").unwrap();
+    refuse(f, &["live", "--script", "wrong.txt"], 2, &["wrong.txt, line 3", "fly"]);
+}
+
+#[test]
 fn no_graphics_card() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();

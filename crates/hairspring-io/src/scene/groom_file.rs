@@ -14,6 +14,8 @@ use toml::Spanned;
 define_settings! {
     /// One `[[groom]]`.
     file struct GroomFile {
+        /// Name of the groom in lists.
+        name: Option<String>, "none", {text "any text"}, default "the file's name";
         /// File of the strands.
         file: Option<FileName>, "none", {text "`.hair`, `.tfx`, `.data`, `.obj`"}, default "required, or `grow`";
         /// Hair grown from the body, used instead of a file.

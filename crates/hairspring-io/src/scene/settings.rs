@@ -15,7 +15,9 @@ impl Reader<'_> {
         let mut grooms = base.grooms;
         for groom in &file.groom {
             let materials = material::of_groom(self.text, file, groom).map_err(|p| p.in_file(self.path))?;
+            let stem = groom.file.as_ref().map(|file| stem(file.get_ref()));
             grooms.push(SceneGroom {
+                name: groom.name.clone().or(stem).unwrap_or_else(|| "Grown hair".into()),
                 materials,
                 guides: groom.guides,
                 effects: groom.effects,

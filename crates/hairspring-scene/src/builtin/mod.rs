@@ -68,12 +68,14 @@ pub fn scene(options: &BuiltinOptions) -> Scene {
 /// have no strands, and there is no body.
 pub fn settings(options: &BuiltinOptions) -> Scene {
     let hair = SceneGroom {
+        name: "Head hair".into(),
         materials: vec![options.style.material()],
         guides: options.guides,
         look: options.style.look(),
         ..SceneGroom::default()
     };
     let face_hair = SceneGroom {
+        name: "Brows and lashes".into(),
         materials: vec![Material::default()],
         guides: Guides::All,
         look: HairLook {

@@ -312,7 +312,6 @@ impl StagedBody {
 
     /// Poses the body for time `time` [s] without velocity.
     pub(super) fn place(&mut self, scene: &Scene, time: f64) {
-        self.pose.move_to(RigidTransform::default());
         self.pose.set(scene, time);
         self.rebuild_surfaces(scene, None);
         self.repose(scene, time);

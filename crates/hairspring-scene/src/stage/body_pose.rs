@@ -61,6 +61,11 @@ impl BodyPose {
         self.moved = by;
     }
 
+    /// Returns the rigid motion of the whole body in addition to its clip.
+    pub(super) fn moved(&self) -> RigidTransform {
+        self.moved
+    }
+
     /// Poses the body for `time` [s].
     pub(super) fn set(&mut self, scene: &Scene, time: f64) {
         match self.at(scene, time) {

@@ -53,6 +53,22 @@ impl FrameRate {
         self.time_of(1)
     }
 
+    /// Returns the rate of `parts` equal parts of each frame.
+    pub fn times(self, parts: u32) -> Self {
+        Self { frames: self.frames.saturating_mul(parts.max(1)), ..self }
+    }
+
+    /// Returns the number of frames of a motion that lasts `duration` [s], including its first and last moment;
+    /// those of five seconds without a motion.
+    pub fn frames_of(self, duration: Option<f64>) -> u32 {
+        let frames = match duration {
+            // Adds a small tolerance (0.0005 frames) for durations that are not exact in binary.
+            Some(duration) => (duration * self.hertz() + 5e-4).floor() + 1.0,
+            None => (5.0 * self.hertz()).round(),
+        };
+        (frames as u32).max(1)
+    }
+
     /// Returns the time of a frame, counted from 0 [s].
     pub fn time_of(self, frame: u64) -> f64 {
         // The product is exact up to 2^53, so only the quotient is rounded.

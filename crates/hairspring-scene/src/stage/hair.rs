@@ -45,7 +45,7 @@ impl StagedHair {
     /// Creates the hair of `groom` at rest, on the body in its initial pose. `first` is the index of its
     /// first simulated strand among those of all grooms.
     pub(super) fn new(groom: SceneGroom, first: usize, scene: &Scene, body: &StagedBody) -> Self {
-        let SceneGroom { groom, materials, guides, effects, look } = groom;
+        let SceneGroom { name: _, groom, materials, guides, effects, look } = groom;
         let mesh = scene.body.as_ref().map(|b| &b.mesh).filter(|_| !groom.roots.is_empty());
         let groom = Arc::new(match mesh {
             Some(mesh) if body.pose().stands_apart() => stand(groom, body, mesh),

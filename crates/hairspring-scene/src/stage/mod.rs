@@ -15,6 +15,7 @@ mod preroll;
 mod reach;
 mod rigid_parts;
 mod starts_inside;
+mod state;
 mod surface;
 mod thickness;
 mod update_settings;
@@ -23,6 +24,7 @@ mod wind;
 
 pub use clock::FrameRate;
 pub use starts_inside::StartsInside;
+pub use state::StageState;
 pub use thickness::ThinMesh;
 pub use values::{Picked, StrandFigures, Value};
 
@@ -200,6 +202,7 @@ impl Stage {
     /// [`Stage::set_user_colliders`] stay where they are.
     pub fn reset(&mut self) {
         self.clock = Clock::ZERO;
+        self.body.pose_mut().move_to(RigidTransform::default());
         self.body.place(&self.scene, 0.0);
         self.hands.reset();
         self.simulation.remove_all_manipulators();

@@ -13,5 +13,6 @@ mod preroll_ends_at_rest;
 mod props_and_limbs_collide_with_hair;
 mod scenes_made_by_code_are_checked_like_files;
 mod settings_change_during_playback;
+mod stages_return_to_a_state;
 mod support;
 mod time_counts_frames;

@@ -1,7 +1,7 @@
 //! The fields of an entry as rows. Every number has its unit, a tooltip and, if it was changed, a reset
 //! button.
 
-use super::super::{Labelled, keys};
+use super::super::{Labelled, TipBeside, keys};
 use crate::{
     edit,
     field::{Field, Kind, of, place, tip, unit, words},
@@ -51,7 +51,7 @@ impl Rows<'_> {
             }
             ui.push_id(name, |ui| {
                 ui.horizontal(|ui| {
-                    ui.label(name_of(field, &back)).on_hover_text(tip(field, key));
+                    ui.label(name_of(field, &back)).tip_beside(ui, &tip(field, key));
                     self.reset(ui, key, back);
                 });
                 let first = self.first_key(key, name);
@@ -65,7 +65,8 @@ impl Rows<'_> {
                 let left = egui::Layout::left_to_right(egui::Align::Center);
                 ui.allocate_ui_with_layout(egui::vec2(LABEL, 18.0), left, |ui| {
                     ui.set_min_width(LABEL);
-                    ui.add(egui::Label::new(name_of(field, &back)).truncate()).on_hover_text(tip(field, key));
+                    ui.add(egui::Label::new(name_of(field, &back)).truncate())
+                        .tip_beside(ui, &tip(field, key));
                 });
                 if let Some(new) = self.control(ui, field, key, value) {
                     self.actions.push(Action::Set(key.clone(), new));
@@ -78,7 +79,7 @@ impl Rows<'_> {
     /// Shows the reset button of a field that was changed since the scene was opened.
     fn reset(&mut self, ui: &mut Ui, key: &Key, back: Option<Option<Value>>) {
         let Some(back) = back else { return };
-        if ui.small_button("reset").on_hover_text("Back to how the scene was opened").clicked() {
+        if ui.small_button("reset").tip_beside(ui, "Back to how the scene was opened").clicked() {
             self.actions.push(Action::Set(key.clone(), back));
         }
     }
@@ -122,7 +123,7 @@ impl Rows<'_> {
                             }
                         }
                     });
-                combo.response.labelled(ui, field.label).on_hover_text(tip(field, key));
+                combo.response.labelled(ui, field.label).tip_beside(ui, &tip(field, key));
                 new
             }
             (Kind::Word, Some(value)) => {
@@ -141,7 +142,7 @@ impl Rows<'_> {
             }
             (Kind::Maybe(from), value) => {
                 let mut never = value.is_none();
-                if ui.checkbox(&mut never, "never").on_hover_text(tip(field, key)).changed() {
+                if ui.checkbox(&mut never, "never").tip_beside(ui, &tip(field, key)).changed() {
                     return Some((!never).then(|| from.into()));
                 }
                 number(ui, as_number(value?)?, unit(key), &tip(field, key)).map(|x| Some(x.into()))
@@ -149,7 +150,7 @@ impl Rows<'_> {
             (_, Some(toml::Value::Boolean(on))) => {
                 let mut on = *on;
                 let response = ui.checkbox(&mut on, "").labelled(ui, field.label);
-                response.on_hover_text(tip(field, key)).changed().then(|| Some(on.into()))
+                response.tip_beside(ui, &tip(field, key)).changed().then(|| Some(on.into()))
             }
             (_, Some(toml::Value::Array(list))) => {
                 let mut changed = false;
@@ -194,5 +195,5 @@ fn number(ui: &mut Ui, x: f64, unit: &str, tip: &str) -> Option<f64> {
     } else {
         drag.max_decimals(3)
     };
-    ui.add(drag).on_hover_text(tip).changed().then_some(new)
+    ui.add(drag).tip_beside(ui, tip).changed().then_some(new)
 }

@@ -51,6 +51,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("prop.joint", "names what carries a file's mesh, which is written beside it"),
     ("prop.pivot", "belongs to its keys"),
     ("prop.keys", "the way of a file's mesh, which is written beside it"),
+    ("groom.name", "what the groom is called, and nothing that is seen"),
     ("groom.file", "a file is opened by File or dropped on the window"),
     ("groom.scale", "how a file is read"),
     ("groom.up", "how a file is read"),

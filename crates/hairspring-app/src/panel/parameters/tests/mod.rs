@@ -225,7 +225,7 @@ fn hairs_are_counted_again_when_the_slider_is_released() {
         assert!(session.borrow_mut().error().is_none());
         let session = session.borrow();
         let snapshot = session.latest().filter(|s| s.scene == session.begun())?;
-        Some(snapshot.stages[0].still.grooms[0].strands() as i64)
+        Some(snapshot.stages[0].still.grooms[0].strand_count() as i64)
     };
     let waited = (0..12_000).find_map(|_| {
         std::thread::sleep(std::time::Duration::from_millis(5));

@@ -1,0 +1,144 @@
+//! Opening a file of any kind as a scene.
+
+use super::{Document, builtin_text};
+use crate::{AppError, destination::settled};
+use hairspring_io::Format;
+use std::{
+    io::{BufRead, BufReader},
+    path::{Path, PathBuf},
+};
+
+/// The kinds of file that open as a scene: title and extensions, for file dialogs.
+pub const KINDS: [(&str, &[&str]); 4] = [
+    ("Scene", &["toml"]),
+    ("Groom", &["hair", "tfx", "data", "obj"]),
+    ("Body", &["glb", "gltf", "vrm", "obj", "tfxmesh"]),
+    ("Motion", &["bvh"]),
+];
+
+/// Largest start of an `.obj` file that is searched for its first face or polyline [bytes].
+const SEARCHED: u64 = 64 << 20;
+
+/// What a file is to the open scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Role {
+    Scene,
+    Groom,
+    Body,
+    Motion,
+}
+
+impl Role {
+    fn of(path: &Path) -> Option<Self> {
+        Some(match Format::of(path)? {
+            Format::Scene => Self::Scene,
+            Format::Hair | Format::Tfx | Format::Usc => Self::Groom,
+            Format::Obj if holds_polylines(path) => Self::Groom,
+            Format::Obj | Format::Gltf | Format::TfxMesh => Self::Body,
+            Format::Bvh => Self::Motion,
+            Format::TfxBone => return None,
+        })
+    }
+}
+
+/// Whether an `.obj` file has polylines and no face before them: it holds a groom.
+fn holds_polylines(path: &Path) -> bool {
+    use std::io::Read;
+    let Some(file) = std::fs::File::open(path).ok().filter(|f| f.metadata().is_ok_and(|m| m.is_file()))
+    else {
+        return false;
+    };
+    let mut lines = BufReader::new(file.take(SEARCHED)).split(b'\n').map_while(Result::ok);
+    lines.find_map(|line| match line.trim_ascii_start() {
+        [b'f', b' ' | b'\t', ..] => Some(false),
+        [b'l', b' ' | b'\t', ..] => Some(true),
+        _ => None,
+    }) == Some(true)
+}
+
+/// Whether opening this file takes the place of the scene. Otherwise it replaces a part of the scene.
+pub fn replaces_scene(path: &Path) -> bool {
+    !matches!(Role::of(path), Some(Role::Body | Role::Motion))
+}
+
+impl Document {
+    /// Opens a file of any kind: a scene, or a groom in a scene of its own. A body or a motion replaces that
+    /// of `current`, or that of the built-in head.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read, or if its extension is unknown. The files that a scene
+    /// names are not read yet.
+    pub fn open_any(path: &Path, current: Option<&Self>) -> Result<Self, AppError> {
+        let whole = settled(path);
+        let name = toml::Value::String(whole.to_string_lossy().into_owned()).to_string();
+        let head;
+        let current = match current {
+            Some(current) => current,
+            None => {
+                head = Self::new(&new_scene(), builtin_text("wavy", None))?;
+                &head
+            }
+        };
+        match Role::of(path) {
+            Some(Role::Scene) => Self::open(&whole),
+            Some(Role::Groom) => {
+                Self::new(&new_scene(), format!("[[groom]]\nfile = {name}\nmaterial = \"wavy\"\n"))
+            }
+            Some(Role::Body) => Ok(Self::new(&current.base(), current.with_body(&name)?)?.never_saved()),
+            Some(Role::Motion) => Ok(Self::new(&current.base(), current.with_motion(&name)?)?.never_saved()),
+            None => {
+                let kinds = KINDS.map(|(kind, extensions)| {
+                    format!("{} (.{})", kind.to_lowercase(), extensions.join(", ."))
+                });
+                Err(AppError::new(format!("{} is no {}; open such a file", path.display(), kinds.join(", "))))
+            }
+        }
+    }
+
+    /// The path that named files are relative to.
+    pub fn base(&self) -> PathBuf {
+        self.file().map_or_else(new_scene, PathBuf::from)
+    }
+
+    /// The same document, all of which counts as an unsaved change.
+    pub(super) fn never_saved(mut self) -> Self {
+        self.saved.clear();
+        self
+    }
+}
+
+/// The path of a scene without a file.
+pub fn new_scene() -> PathBuf {
+    std::env::current_dir().unwrap_or_default().join("scene.toml")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_kind_of_file_opens_as_a_scene() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            path
+        };
+        let text = |path: &Path| Document::open_any(path, None).unwrap().text().to_owned();
+        for name in ["a.hair", "a.tfx", "a.data", "a.TFX"] {
+            let text = text(&file(name, ""));
+            assert!(text.contains("[[groom]]") && text.contains(name) && !text.contains("builtin"), "{text}");
+        }
+        for name in ["b.glb", "b.gltf", "b.vrm", "b.tfxmesh"] {
+            let text = text(&file(name, ""));
+            assert!(text.contains("[body]") && text.contains("[groom.grow]"), "{text}");
+        }
+        let motion = text(&file("c.bvh", ""));
+        assert!(motion.contains("[clip]") && motion.contains("[builtin]"), "{motion}");
+        assert!(text(&file("faces.obj", "v 0 0 0\n l1\nf 1 2 3\nl 1 2\n")).contains("[body]"));
+        assert!(text(&file("lines.obj", "v 0 0 0\r\n  l 1 2\r\n")).contains("[[groom]]"));
+        assert_eq!(text(&file("d.toml", "[builtin]\n")), "[builtin]\n");
+        let why = Document::open_any("e.gif".as_ref(), None).err().unwrap().to_string();
+        assert!(why.contains("e.gif") && KINDS.iter().flat_map(|k| k.1).all(|e| why.contains(e)), "{why}");
+    }
+}

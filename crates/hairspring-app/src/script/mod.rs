@@ -1,0 +1,171 @@
+//! Scripted sessions: user input line by line, for tests, pictures and demonstrations.
+//!
+//! [`VERBS`] lists what a line can be; docs/window.md shows the same list.
+
+mod verbs;
+
+pub use verbs::{VERBS, Verb};
+
+use crate::{AppError, key::Key, record::Kind, view::Hand};
+use glam::Vec2;
+use hairspring_scene::stage::{FrameRate, Value};
+use std::{collections::VecDeque, path::PathBuf};
+
+/// A line of a script.
+#[derive(Clone, Debug)]
+pub enum Line {
+    /// Waits for this number of steps.
+    Wait(u64),
+    /// Plays or pauses.
+    Play(bool),
+    /// Advances by one step.
+    Step,
+    /// Returns to time 0.
+    Reset,
+    /// Goes to the nearest cached frame.
+    Seek(u64),
+    /// Sets the first and the last frame of the loop.
+    Range(Option<(u64, u64)>),
+    /// Playback speed in scene seconds per second.
+    Speed(f32),
+    /// Writes a value, or removes it.
+    Set(Key, Option<toml_edit::Value>),
+    /// Undoes one step.
+    Undo,
+    /// Redoes one step.
+    Redo,
+    /// Opens the built-in head in a style.
+    New(String),
+    /// Opens a file.
+    Open(PathBuf),
+    /// Saves the scene.
+    Save(PathBuf),
+    /// Selects a tool.
+    Hand(Hand),
+    /// Drags from one point of the picture to another in this number of frames.
+    Drag(Vec2, Vec2, u32),
+    /// Like `Drag`, but does not release.
+    Hold(Vec2, Vec2, u32),
+    /// Releases the pointer.
+    Release,
+    /// Selects the value that colors show.
+    Show(Option<Value>),
+    /// Searches for parameters, whose groups open.
+    Find(String),
+    /// Switches something on or off by its name.
+    Switch(&'static str, bool),
+    /// Records for this number of seconds.
+    Record(Kind, PathBuf, f32),
+    /// Sets the size of recordings [pixels].
+    Size([u32; 2]),
+    /// Sets the frame rate of recordings and bakes.
+    Rate(FrameRate),
+    /// Writes the hair of the current frame.
+    Export(PathBuf),
+    /// Writes the hair of these frames.
+    Bake(PathBuf, [u32; 2]),
+    /// Writes the window as a picture.
+    Shot(PathBuf),
+    /// Prints the speed.
+    Pace,
+    /// Closes the window.
+    Quit,
+}
+
+/// A script that runs, line by line.
+#[derive(Debug, Default)]
+pub struct Script {
+    /// The name of its file, for messages.
+    name: String,
+    lines: VecDeque<(usize, Line)>,
+    /// Number of the last line that was begun, until the script is finished.
+    current: Option<usize>,
+}
+
+impl Script {
+    /// Parses the text of the script `name`.
+    ///
+    /// # Errors
+    /// Returns an error for the first line that is no command.
+    pub fn parse(name: &str, text: &str) -> Result<Self, AppError> {
+        let mut lines = VecDeque::new();
+        for (number, line) in text.lines().enumerate() {
+            let line = line.trim();
+            if line.is_empty() || line.starts_with('#') {
+                continue;
+            }
+            let read = verbs::read(line)
+                .map_err(|why| AppError::new(format!("{name}, line {}: {why}", number + 1)))?;
+            lines.push_back((number + 1, read));
+        }
+        Ok(Self { name: name.into(), lines, current: None })
+    }
+
+    /// Whether every line was begun.
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty()
+    }
+
+    /// Begins the next line.
+    pub fn begin_next(&mut self) -> Option<Line> {
+        let next = self.lines.pop_front();
+        self.current = next.as_ref().map(|(number, _)| *number);
+        next.map(|(_, line)| line)
+    }
+
+    /// Puts a line back that cannot begin yet.
+    pub fn wait_for(&mut self, line: Line) {
+        if let Some(number) = self.current {
+            self.lines.push_front((number, line));
+        }
+    }
+
+    /// The place of the line that runs, for messages: the name of the file and the number of the line.
+    pub fn place(&self) -> Option<String> {
+        Some(format!("{}, line {}", self.name, self.current?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_verb_is_read_in_the_form_that_it_is_listed_in() {
+        for verb in VERBS {
+            let line = format!("{} {}", verb.name, verb.example);
+            assert!(Script::parse("s", &line).is_ok_and(|script| script.lines.len() == 1), "{line}");
+        }
+    }
+
+    #[test]
+    fn a_line_that_is_no_command_is_refused_by_its_file_and_number() {
+        for wrong in [
+            "fly",
+            "set a",
+            "set a [",
+            "drag 1 2 3",
+            "hand foot",
+            "show nothing",
+            "compare maybe",
+            "wait x",
+            "clip a.mp4",
+            "still",
+            "overlay moon on",
+        ] {
+            let error = Script::parse("s.txt", &format!("play\n# no\n\n{wrong}")).unwrap_err().to_string();
+            assert!(error.starts_with("s.txt, line 4: "), "{wrong}: {error}");
+        }
+    }
+
+    #[test]
+    fn the_documented_verbs_are_those_that_the_parser_knows() {
+        let page =
+            std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/window.md")).unwrap();
+        let (_, section) = page.split_once("## Scripts").expect("the page has a section about scripts");
+        let section = section.split("\n## ").next().unwrap_or_default();
+        let rows: Vec<&str> = section.lines().filter(|line| line.starts_with("| `")).collect();
+        let wanted: Vec<String> = VERBS.iter().map(Verb::row).collect();
+        assert_eq!(rows, wanted, "the table in docs/window.md should be\n{}", wanted.join("\n"));
+    }
+}

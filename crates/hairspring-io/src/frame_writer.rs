@@ -1,0 +1,97 @@
+//! Writes the hair of a scene, frame by frame, as groom files.
+
+use crate::{Error, Strands, write_strands};
+use glam::{Vec2, Vec3};
+use std::path::Path;
+
+/// All grooms of a scene as the strands of one file, one groom after the other. The static arrays are kept from
+/// frame to frame.
+#[derive(Clone, Debug, Default)]
+pub struct FrameWriter {
+    points: Vec<Vec3>,
+    offsets: Vec<u32>,
+    radii: Vec<f32>,
+    colors: Vec<Vec3>,
+    root_uvs: Vec<Vec2>,
+}
+
+/// Why a frame was not written.
+#[derive(Debug, thiserror::Error)]
+pub enum FrameError {
+    /// The simulation has diverged.
+    #[error(
+        "strand {strand} is not finite at {time} s, so {path} was not written; a setting of the scene is too large"
+    )]
+    NotFinite {
+        /// Index of the strand in the file.
+        strand: usize,
+        /// Time of the frame [s].
+        time: f64,
+        /// Path of the file.
+        path: String,
+    },
+    /// The file cannot be written.
+    #[error(transparent)]
+    File(#[from] Error),
+}
+
+impl FrameWriter {
+    /// Collects what is the same in every frame; the points of `grooms` are ignored. Returns the writer, and
+    /// what it leaves out, one sentence each.
+    pub fn new<'a>(grooms: impl Iterator<Item = Strands<'a>>) -> (Self, Vec<String>) {
+        let grooms: Vec<Strands<'a>> = grooms.collect();
+        let mut offsets = vec![0];
+        for groom in &grooms {
+            let before = offsets.last().copied().unwrap_or(0);
+            offsets.extend(groom.offsets.iter().skip(1).map(|o| o + before));
+        }
+        // A file has a color at every point or none at all; the same holds for texture coordinates.
+        let colored = grooms.iter().filter(|g| !g.colors.is_empty()).count();
+        let mapped = grooms.iter().filter(|g| !g.root_uvs.is_empty()).count();
+        let parts = [(colored, "colors"), (mapped, "texture coordinates")];
+        let some = parts.into_iter().filter(|(some, _)| *some > 0 && *some < grooms.len());
+        let notes =
+            some.map(|(some, what)| format!("only {some} of {} grooms have {what}; left out", grooms.len()));
+        let writer = Self {
+            points: Vec::new(),
+            offsets,
+            radii: grooms.iter().flat_map(|g| g.radii.iter().copied()).collect(),
+            colors: match colored == grooms.len() {
+                true => grooms.iter().flat_map(|g| g.colors.iter().copied()).collect(),
+                false => Vec::new(),
+            },
+            root_uvs: match mapped == grooms.len() {
+                true => grooms.iter().flat_map(|g| g.root_uvs.iter().copied()).collect(),
+                false => Vec::new(),
+            },
+        };
+        (writer, notes.collect())
+    }
+
+    /// Writes a frame: the points of all grooms [m] at `time` [s].
+    ///
+    /// # Errors
+    /// Returns an error if a point is not finite, or an error of [`write_strands`].
+    pub fn write<'a>(
+        &mut self,
+        path: &Path,
+        time: f64,
+        points: impl Iterator<Item = &'a [Vec3]>,
+    ) -> Result<(), FrameError> {
+        self.points.clear();
+        points.for_each(|points| self.points.extend_from_slice(points));
+        if let Some(point) = self.points.iter().position(|p| !p.is_finite()) {
+            let strand = self.offsets.partition_point(|first| *first as usize <= point) - 1;
+            return Err(FrameError::NotFinite { strand, time, path: path.display().to_string() });
+        }
+        let strands = Strands {
+            points: &self.points,
+            offsets: &self.offsets,
+            radii: &self.radii,
+            colors: &self.colors,
+            root_uvs: &self.root_uvs,
+        };
+        write_strands(path, strands)?;
+        Ok(())
+    }
+}
