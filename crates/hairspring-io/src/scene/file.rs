@@ -8,7 +8,9 @@ use hairspring::{
     material::PRESETS,
     settings::{Effects, Neighbours, Solver, Volume, When, Wind, define_settings},
 };
-use hairspring_scene::{Camera, Collider, Ground, Guides, Hand, SceneSheet, deserialize_optional_color};
+use hairspring_scene::{
+    Camera, Collider, Ground, Guides, Hand, Picture, SceneSheet, deserialize_optional_color,
+};
 use serde::{Deserialize, Deserializer};
 use std::{collections::BTreeMap, path::PathBuf};
 use toml::Spanned;
@@ -80,6 +82,9 @@ define_settings! {
         neighbours: Neighbours, "none", {table};
         /// The camera. By default, the scene is framed automatically.
         camera: Option<Camera>, "none", {table};
+        /// Backdrop, light and shutter of pictures.
+        #[serde(default)]
+        picture: Picture, "none", {table};
         /// The ground in the picture.
         #[serde(default)]
         ground: Ground, "none", {table};

@@ -20,7 +20,7 @@ pub use bust::head;
 pub use hand::{Hand, hand};
 pub use style::Style;
 
-use super::{Camera, Guides, HairLook, Scene, SceneGroom};
+use super::{Camera, Guides, Scene, SceneGroom};
 use glam::vec3;
 use hairspring::material::Material;
 
@@ -54,17 +54,20 @@ impl Default for BuiltinOptions {
 
 /// Builds the scene. The result is bitwise identical for the same options and any number of threads.
 pub fn scene(options: &BuiltinOptions) -> Scene {
-    let (body, collision) = rayon::join(bust::drawn, bust::collision);
+    let (mut body, collision) = rayon::join(bust::drawn, bust::collision);
     let (strands, points) = (options.strands as usize, options.points.max(3) as usize);
     let mut scene = settings(options);
     scene.grooms[0].groom = groom::groom(&body.mesh, &options.style.cut(), strands, points, options.seed);
-    scene.grooms[1].groom = brows::groom(options.seed);
+    scene.grooms[1].groom = brows::groom(options.seed, &scene.grooms[0].look);
+    if options.strands > 0 {
+        bust::shade_scalp(&mut body.mesh, scene.grooms[0].look.root_color);
+    }
     scene.clip = Some(motion::clip(&body));
     (scene.body, scene.collision) = (Some(body), Some(collision));
     scene
 }
 
-/// Returns the scene without its geometry, which is immediate: its two grooms (hair, and brows with lashes)
+/// Returns the scene without its geometry, which is immediate: its two grooms (hair, and brows with lashes and the fine hair of the hairline)
 /// have no strands, and there is no body.
 pub fn settings(options: &BuiltinOptions) -> Scene {
     let hair = SceneGroom {
@@ -73,16 +76,8 @@ pub fn settings(options: &BuiltinOptions) -> Scene {
         look: options.style.look(),
         ..SceneGroom::default()
     };
-    let face_hair = SceneGroom {
-        materials: vec![Material::default()],
-        guides: Guides::All,
-        look: HairLook {
-            root_color: vec3(0.02, 0.012, 0.008),
-            tip_color: vec3(0.03, 0.018, 0.012),
-            ..HairLook::default()
-        },
-        ..SceneGroom::default()
-    };
+    let face_hair =
+        SceneGroom { materials: vec![Material::default()], guides: Guides::All, ..SceneGroom::default() };
     Scene {
         name: format!("built-in, {}", options.style.name()),
         grooms: vec![hair, face_hair],
