@@ -183,10 +183,10 @@ pub fn shoot(
     let ending = play(&mut stage, last, fps, |frame, stage, report| {
         totals.stepped(frame, report);
         let mut timings = None;
+        if let Some(turn) = turn.filter(|turn| frame >= turn.first) {
+            studio.turn((frame - turn.first) as f32 / turn.count() as f32);
+        }
         if wanted.binary_search(&frame).is_ok() {
-            if let Some(turn) = turn {
-                studio.turn((frame - turn.first) as f32 / turn.count() as f32);
-            }
             let (drawn, times) = studio.draw(stage)?;
             timings = Some(times);
             film.show(frame, drawn)?;

@@ -1,7 +1,6 @@
 //! Eyebrows, eyelashes and the fine hair of the hairline: short hairs that make the face look natural.
 
 use super::{random::Random, sdf::smoothstep, shape};
-use crate::HairLook;
 use glam::{Vec2, Vec3, vec2, vec3};
 use hairspring::groom::Groom;
 
@@ -10,15 +9,13 @@ const BROW_HAIRS: u32 = 420;
 /// Number of hairs on one upper lid; a real one has 90 to 150.
 const LASHES: u32 = 110;
 /// Number of fine hairs on each half of the hairline.
-const FINE_HAIRS: u32 = 420;
+const FINE_HAIRS: u32 = 560;
 /// Width of the band below the hairline in which they grow [m].
-const FINE_BAND: f32 = 0.007;
+const FINE_BAND: f32 = 0.009;
 /// Angle around the head at which they end, in front of the ear [rad].
 const FINE_END: f32 = 1.2;
 /// Thickness of fine hair, relative to that of brows [1].
-const FINE: f32 = 0.4;
-/// Color of brows and lashes at root and tip, linear RGB.
-const BROW_COLORS: [Vec3; 2] = [vec3(0.02, 0.012, 0.008), vec3(0.03, 0.018, 0.012)];
+const FINE: f32 = 0.5;
 /// Points per hair.
 const POINTS: usize = 6;
 /// Radius at the root [m]: brow hairs and lashes are coarser than scalp hair.
@@ -34,9 +31,8 @@ const BROW: [(Vec2, f32); 5] = [
     (vec2(0.0485, 0.0185), 0.0007),
 ];
 
-/// Creates both brows, the lashes of both upper lids, and the fine hair of the hairline, which has the colors
-/// of `hair`.
-pub fn groom(seed: u32, hair: &HairLook) -> Groom {
+/// Creates both brows, the lashes of both upper lids, and the fine hair of the hairline.
+pub fn groom(seed: u32) -> Groom {
     let mut strands = Vec::new();
     let mut groups = Vec::new();
     for side in [1.0, -1.0] {
@@ -55,16 +51,10 @@ pub fn groom(seed: u32, hair: &HairLook) -> Groom {
     }
     let mut groom = Groom::from_strands(&strands, RADIUS);
     for (strand, group) in groom.radii.chunks_exact_mut(POINTS).zip(&groups) {
-        let (thickness, [root, tip]) = match group {
-            2 => (FINE, [hair.root_color, hair.tip_color]),
-            _ => (1.0, BROW_COLORS),
-        };
-        for (k, r) in strand.iter_mut().enumerate() {
-            let along = k as f32 / (POINTS - 1) as f32;
-            // Pointed tips: these hairs are never cut.
-            *r *= thickness * (1.0 - 0.8 * along);
-            groom.colors.push(root.lerp(tip, along));
-        }
+        let thickness = if *group == 2 { FINE } else { 1.0 };
+        // Pointed tips: these hairs are never cut.
+        let taper = |k: usize| thickness * (1.0 - 0.8 * k as f32 / (POINTS - 1) as f32);
+        strand.iter_mut().enumerate().for_each(|(k, r)| *r *= taper(k));
     }
     groom.groups = groups;
     groom.group_names = vec!["brows".into(), "lashes".into(), "hairline".into()];

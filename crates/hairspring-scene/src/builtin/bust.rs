@@ -140,7 +140,7 @@ fn color(mesh: &mut Mesh) {
 /// linear RGB.
 pub fn shade_scalp(mesh: &mut Mesh, hair: Vec3) {
     /// Fraction of the scalp that the shafts hide.
-    const HIDDEN: f32 = 0.75;
+    const HIDDEN: f32 = 0.85;
     for part in mesh.parts.iter_mut().filter(|part| part.name == "scalp") {
         part.color = part.color.lerp(hair, HIDDEN);
     }

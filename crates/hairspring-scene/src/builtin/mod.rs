@@ -20,7 +20,7 @@ pub use bust::head;
 pub use hand::{Hand, hand};
 pub use style::Style;
 
-use super::{Camera, Guides, Scene, SceneGroom};
+use super::{Camera, Guides, HairLook, Scene, SceneGroom};
 use glam::vec3;
 use hairspring::material::Material;
 
@@ -58,7 +58,7 @@ pub fn scene(options: &BuiltinOptions) -> Scene {
     let (strands, points) = (options.strands as usize, options.points.max(3) as usize);
     let mut scene = settings(options);
     scene.grooms[0].groom = groom::groom(&body.mesh, &options.style.cut(), strands, points, options.seed);
-    scene.grooms[1].groom = brows::groom(options.seed, &scene.grooms[0].look);
+    scene.grooms[1].groom = brows::groom(options.seed);
     if options.strands > 0 {
         bust::shade_scalp(&mut body.mesh, scene.grooms[0].look.root_color);
     }
@@ -67,8 +67,8 @@ pub fn scene(options: &BuiltinOptions) -> Scene {
     scene
 }
 
-/// Returns the scene without its geometry, which is immediate: its two grooms (hair, and brows with lashes and the fine hair of the hairline)
-/// have no strands, and there is no body.
+/// Returns the scene without its geometry, which is immediate: its two grooms (hair; brows, lashes and the fine
+/// hair of the hairline) have no strands, and there is no body.
 pub fn settings(options: &BuiltinOptions) -> Scene {
     let hair = SceneGroom {
         materials: vec![options.style.material()],
@@ -76,8 +76,17 @@ pub fn settings(options: &BuiltinOptions) -> Scene {
         look: options.style.look(),
         ..SceneGroom::default()
     };
-    let face_hair =
-        SceneGroom { materials: vec![Material::default()], guides: Guides::All, ..SceneGroom::default() };
+    let face_hair = SceneGroom {
+        materials: vec![Material::default()],
+        guides: Guides::All,
+        // Brows are darker than the hair of the head.
+        look: HairLook {
+            root_color: hair.look.root_color * 0.45,
+            tip_color: hair.look.root_color * 0.65,
+            ..HairLook::default()
+        },
+        ..SceneGroom::default()
+    };
     Scene {
         name: format!("built-in, {}", options.style.name()),
         grooms: vec![hair, face_hair],
