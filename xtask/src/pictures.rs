@@ -8,8 +8,8 @@
 //! frame = 90                           frame = 30                       at 30 frames per second
 //! data = true  (third-party files)
 //! card = true  (drawn with --gpu)      low = 0.5                        any value of TOML
-//!                                      high = 8.0
-//!                                      with = { "wind.gust" = 1.0 }     optional changes in both
+//! groom = "groom.toml"  (see           high = 8.0
+//! motion = "head.bvh"    `prepared`)   with = { "wind.gust" = 1.0 }     optional changes in both
 //! ```
 
 use crate::run;
@@ -38,7 +38,8 @@ pub fn draw(part: &str) -> Result<(), String> {
             println!("{picture}: skipped, the data that {file} names is not here");
         } else if picture.contains(part) {
             let card = entry.get("card").and_then(Value::as_bool).unwrap_or(false);
-            render(&program, Path::new(file), picture, frame(entry)?, "640x480", card)?;
+            let file = prepared(&program, Path::new(file), entry)?;
+            render(&program, &file, picture, frame(entry)?, "640x480", card)?;
         }
     }
     for entry in entries(&table, "parameter") {
@@ -71,6 +72,32 @@ fn program() -> Result<PathBuf, String> {
     run::cargo(&["build", "--release"], &[])?;
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or("target".into(), PathBuf::from);
     Ok(target.join("release").join(format!("hairspring{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// The file of a scene, ready to be drawn. If the entry names a groom scene, the tutorial's first step is done:
+/// in a folder as deep as that of the scene, the groom is baked and the motion is copied.
+fn prepared(program: &Path, scene: &Path, entry: &Table) -> Result<PathBuf, String> {
+    if entry.get("groom").is_none() {
+        return Ok(scene.to_owned());
+    }
+    let folder = Path::new("out/shot");
+    fs::create_dir_all(folder).map_err(|why| format!("{}: {why}", folder.display()))?;
+    let copy = |from: &Path| {
+        let to = folder.join(from.file_name().unwrap_or_default());
+        fs::copy(from, &to).map_err(|why| format!("{}: {why}", from.display())).map(|_| to)
+    };
+    copy(Path::new(word(entry, "motion")?))?;
+    let groom = copy(Path::new(word(entry, "groom")?))?;
+    let status = Command::new(program)
+        .args(["--quiet", "bake", "--frames", "1", "-o"])
+        .args([&folder.join("groom.####.hair"), &groom])
+        .stdout(Stdio::null())
+        .status();
+    match status {
+        Ok(status) if status.success() => copy(scene),
+        Ok(status) => Err(format!("{}: the program ended with {status}", groom.display())),
+        Err(why) => Err(format!("{}: {why}", program.display())),
+    }
 }
 
 /// Draws one frame of a scene as a picture of the book, on the CPU or on the GPU.

@@ -59,6 +59,7 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
         ("volume", value(&scene.volume)),
         ("neighbours", value(&scene.neighbours)),
         ("hand", value(&scene.hands)),
+        ("picture", value(&scene.picture)),
         ("ground", value(&scene.ground)),
     ] {
         all.insert(name.into(), value);

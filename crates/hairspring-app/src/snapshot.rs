@@ -16,7 +16,7 @@ use hairspring::{
 };
 use hairspring_io::Strands;
 use hairspring_scene::{
-    HairLook,
+    HairLook, Picture,
     stage::{FrameReport, Picked, Stage, StrandFigures, Value},
 };
 use hairspring_view::{Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality};
@@ -32,6 +32,8 @@ pub struct Still {
     pub counts: [usize; 4],
     /// Name of the instruction set.
     pub instruction_set: String,
+    /// The box (min, max) of hair and head over the whole motion [m]; `None` if no point is finite.
+    pub subject: Option<(Vec3, Vec3)>,
 }
 
 /// The static data of one groom.
@@ -82,6 +84,7 @@ impl Still {
             body: stage.body().map(|b| mesh(b.mesh)),
             counts: [simulated, strands, points, all],
             instruction_set: stage.instruction_set(),
+            subject: stage.subject_bounds(),
         }
     }
 }
@@ -105,6 +108,8 @@ pub struct StageSnapshot {
     pub positions: Vec<Vec3>,
     /// See `positions`.
     pub normals: Vec<Vec3>,
+    /// Backdrop, light and shutter.
+    picture: Picture,
     /// The ground.
     ground: Option<Ground>,
     /// Colliders.
@@ -135,6 +140,7 @@ impl StageSnapshot {
             values: Vec::new(),
             positions: Vec::new(),
             normals: Vec::new(),
+            picture: Picture::default(),
             ground: None,
             obstacles: Vec::new(),
             anchor: RigidTransform::default(),
@@ -179,6 +185,7 @@ impl StageSnapshot {
             self.positions.extend_from_slice(body.positions);
             self.normals.extend_from_slice(body.normals);
         }
+        self.picture = stage.scene().picture;
         self.ground = Ground::of(stage.scene());
         self.obstacles.clear();
         self.obstacles.extend_from_slice(stage.obstacles());
@@ -295,8 +302,8 @@ impl StageSnapshot {
             hair: if sight.hair { &hair } else { &[] },
             bodies: &bodies,
             camera: sight.camera,
-            lighting: Lighting { exposure: sight.exposure, ..Lighting::facing(&sight.lit_for) },
-            background: Background::default(),
+            lighting: Lighting { exposure: sight.exposure, ..Lighting::of(&self.picture, &sight.lit_for) },
+            background: Background::of(&self.picture),
             ground: self.ground,
             quality: sight.quality,
         })

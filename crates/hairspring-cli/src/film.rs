@@ -1,9 +1,14 @@
 //! Writes pictures and clips on a separate thread while the next frame is simulated and drawn.
 
-use crate::{fault::Fault, manifest::Manifest, output};
-use hairspring_view::{ClipWriter, Image, write_jpeg, write_png};
+use crate::{
+    fault::Fault,
+    manifest::Manifest,
+    output,
+    picture::{Drawn, Format},
+};
+use hairspring_view::{ClipWriter, Image, Layers, write_exr, write_jpeg, write_png};
 use std::{
-    path::PathBuf,
+    path::{Path, PathBuf},
     sync::mpsc::{Receiver, Sender, SyncSender, channel, sync_channel},
     thread::JoinHandle,
     time::{Duration, Instant},
@@ -21,6 +26,7 @@ pub enum Sink {
 
 enum Job {
     Frame(u32, Image),
+    Layers(u32, Box<Layers>),
     Finish,
 }
 
@@ -50,10 +56,15 @@ impl Film {
     }
 
     /// Queues a frame for writing.
-    pub fn show(&mut self, number: u32, image: &Image) -> Result<(), Fault> {
-        let mut copy = self.spare.try_recv().unwrap_or_default();
-        copy.clone_from(image);
-        self.send(Job::Frame(number, copy))
+    pub fn show(&mut self, number: u32, drawn: Drawn) -> Result<(), Fault> {
+        match drawn {
+            Drawn::Image(image) => {
+                let mut copy = self.spare.try_recv().unwrap_or_default();
+                copy.clone_from(image);
+                self.send(Job::Frame(number, copy))
+            }
+            Drawn::Layers(layers) => self.send(Job::Layers(number, layers)),
+        }
     }
 
     /// Completes all files; returns the time spent on writing.
@@ -86,11 +97,14 @@ fn work(sinks: &mut Vec<Sink>, todo: Receiver<Job>, done: &Sender<Image>) -> Res
         let began = Instant::now();
         match job {
             Job::Frame(number, image) => {
-                for sink in &mut *sinks {
-                    sink.write(number, &image)?;
-                }
+                let drawn = Drawn::Image(&image);
+                sinks.iter_mut().try_for_each(|sink| sink.write(number, &drawn))?;
                 // After the last frame nobody receives the image.
                 let _ = done.send(image);
+            }
+            Job::Layers(number, layers) => {
+                let drawn = Drawn::Layers(layers);
+                sinks.iter_mut().try_for_each(|sink| sink.write(number, &drawn))?;
             }
             Job::Finish => {
                 for sink in sinks.drain(..) {
@@ -113,19 +127,42 @@ impl Drop for Film {
     }
 }
 
+/// Writes a picture in the format that the file's name selects.
+fn write(path: &Path, drawn: &Drawn) -> Result<(), Fault> {
+    match (output::extension(path).as_str(), drawn) {
+        ("exr", Drawn::Layers(layers)) => write_exr(path, layers)?,
+        ("jpg", drawn) => write_jpeg(path, &drawn.image())?,
+        (_, drawn) => write_png(path, &drawn.image())?,
+    }
+    Ok(())
+}
+
 impl Sink {
-    fn write(&mut self, number: u32, image: &Image) -> Result<(), Fault> {
+    /// What the files of all `sinks` can hold.
+    pub fn format(sinks: &[Self]) -> Format {
+        let of = |sink: &Self| match sink {
+            Self::Clip(_) => Format::Opaque,
+            Self::Pictures(path, _) | Self::Still(path, _) => match output::extension(path).as_str() {
+                "exr" => Format::Layers,
+                "png" => Format::Alpha,
+                _ => Format::Opaque,
+            },
+        };
+        match sinks {
+            [sink] => of(sink),
+            _ => Format::Opaque,
+        }
+    }
+
+    fn write(&mut self, number: u32, drawn: &Drawn) -> Result<(), Fault> {
         match self {
-            Self::Clip(clip) => clip.push(image)?,
+            Self::Clip(clip) => clip.push(&drawn.image())?,
             Self::Pictures(pattern, manifest) => {
                 let path = output::frame_path(pattern, number);
-                write_png(&path, image)?;
+                write(&path, drawn)?;
                 manifest.finished(&path)?;
             }
-            Self::Still(path, frame) if *frame == number => match output::extension(path).as_str() {
-                "jpg" => write_jpeg(path, image)?,
-                _ => write_png(path, image)?,
-            },
+            Self::Still(path, frame) if *frame == number => write(path, drawn)?,
             Self::Still(..) => {}
         }
         Ok(())

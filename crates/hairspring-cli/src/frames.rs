@@ -1,7 +1,7 @@
 //! Parses frame numbers, sizes and guides from the command line.
 
 use hairspring::body::Clip;
-use hairspring_scene::{Guides, stage::FrameRate};
+use hairspring_scene::{Background, Guides, stage::FrameRate};
 use std::str::FromStr;
 
 /// Frames from `first` to `last`, both included, counted from 1; frame 1 is the rest pose at time 0.
@@ -82,6 +82,27 @@ pub fn point(text: &str) -> Result<glam::Vec3, String> {
         .and_then(|n| <[f32; 3]>::try_from(n).ok())
         .map(Into::into)
         .ok_or_else(|| "expected three numbers in meters, such as 0,1.6,0.5".into())
+}
+
+/// Parses an angle of the light [degrees].
+pub fn light_angle(text: &str) -> Result<f32, String> {
+    angle(text, -360.0)
+}
+
+/// Parses the angle of a shutter [degrees].
+pub fn shutter(text: &str) -> Result<f32, String> {
+    angle(text, 0.0)
+}
+
+fn angle(text: &str, least: f32) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|n| (least..=360.0).contains(n));
+    number.ok_or_else(|| format!("expected degrees from {least} to 360"))
+}
+
+/// Parses what is behind body and hair.
+pub fn background(text: &str) -> Result<Background, String> {
+    let names = Background::ALL.map(Background::name).join(", ");
+    Background::ALL.into_iter().find(|b| b.name() == text).ok_or(format!("expected one of {names}"))
 }
 
 /// Parses a number above 0.

@@ -15,6 +15,7 @@ mod input;
 mod interrupt;
 mod live;
 mod manifest;
+mod moment;
 mod output;
 mod picture;
 mod play;

@@ -1,17 +1,18 @@
 //! Draws a stage: camera, lights and renderer.
 
-use crate::{fault::Fault, frames};
+use crate::{fault::Fault, frames, moment::Moment};
 use clap::Args;
 use glam::{Quat, Vec3};
-use hairspring_scene::{Camera, stage::Stage};
+use hairspring_scene::{Background, Camera, Picture, stage::Stage};
 use hairspring_view::{
-    Background, Frame, Ground, HairDraw, Image, Lighting, MeshDraw, Quality, Renderer, Timings, frame_camera,
+    Frame, Ground, HairDraw, Image, Layers, Lighting, LinearImage, MeshDraw, Quality, Renderer, Timings,
+    frame_camera,
     gpu::{Gpu, GpuRenderer},
 };
-use std::time::Instant;
+use std::{borrow::Cow, time::Instant};
 
 /// Size, camera and renderer of pictures.
-#[derive(Args)]
+#[derive(Args, Default)]
 pub struct View {
     /// Width and height of the picture [pixels]
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = frames::size)]
@@ -28,6 +29,21 @@ pub struct View {
     /// Vertical field of view [degrees], 1 to 170
     #[arg(long, value_name = "DEGREES", value_parser = clap::value_parser!(u8).range(1..=170))]
     pub fov: Option<u8>,
+
+    /// What is behind body and hair: backdrop, transparent (with an alpha channel, for PNG and EXR), or
+    /// automatic, which is transparent for EXR [default: from the scene, otherwise automatic]
+    #[arg(long, value_name = "WHAT", value_parser = frames::background)]
+    pub background: Option<Background>,
+
+    /// Angle by which the lights are turned about the vertical axis [degrees], counterclockwise as seen from
+    /// above [default: from the scene, otherwise 0]
+    #[arg(long, value_name = "DEGREES", value_parser = frames::light_angle, allow_hyphen_values = true)]
+    pub light_angle: Option<f32>,
+
+    /// Motion blur: how long the shutter is open, of the 360 degrees of a frame; 180 is that of a film camera
+    /// [default: from the scene, otherwise 0]
+    #[arg(long, value_name = "DEGREES", value_parser = frames::shutter)]
+    pub shutter: Option<f32>,
 
     /// Factor for the width of drawn hairs [default: 1 for 100,000 hairs and more, up to 10 for fewer]
     #[arg(long, value_name = "FACTOR", value_parser = frames::positive)]
@@ -57,6 +73,25 @@ struct Card {
     image: Image,
 }
 
+/// What the files of a run can hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Colors: clips and JPEG.
+    Opaque,
+    /// Colors and alpha: PNG.
+    Alpha,
+    /// Linear light, alpha, depth and motion: EXR.
+    Layers,
+}
+
+/// A picture of one frame.
+pub enum Drawn<'a> {
+    /// 8 bits.
+    Image(&'a Image),
+    /// For EXR.
+    Layers(Box<Layers>),
+}
+
 /// A camera, its lights and a renderer.
 pub struct Studio {
     painter: Painter,
@@ -64,15 +99,37 @@ pub struct Studio {
     start: Camera,
     camera: Camera,
     width_scale: f32,
+    picture: Picture,
+    format: Format,
+    /// The last frame, if motion is shown.
+    last: Option<Moment>,
+    /// The last picture that was developed from linear light.
+    image: Image,
+}
+
+/// Settings of a studio.
+#[derive(Clone, Copy)]
+pub struct Setup {
+    /// Whether [`Studio::turn`] will turn the camera.
+    pub turned: bool,
+    /// What the files can hold.
+    pub format: Format,
+}
+
+impl Setup {
+    /// A still camera, and files without alpha.
+    pub const PLAIN: Self = Self { turned: false, format: Format::Opaque };
 }
 
 impl Studio {
     /// Sets up for the current state of the stage. If the GPU draws and supports it, the GPU also
     /// interpolates the follow hairs.
-    pub fn new(view: &View, stage: &mut Stage) -> Result<Self, Fault> {
+    pub fn new(view: &View, stage: &mut Stage, setup: Setup) -> Result<Self, Fault> {
         let (width, height) = view.size;
-        let mut camera =
-            stage.scene().camera.unwrap_or_else(|| overview(stage, width as f32 / height as f32));
+        let mut camera = stage
+            .scene()
+            .camera
+            .unwrap_or_else(|| overview(stage, width as f32 / height as f32, setup.turned));
         camera.position = view.camera.unwrap_or(camera.position);
         camera.target = view.target.unwrap_or(camera.target);
         camera.fov = view.fov.map_or(camera.fov, f32::from);
@@ -80,17 +137,51 @@ impl Studio {
             let text = "the camera is at its target; move --camera or --target".into();
             return Err(Fault::Usage(text));
         }
+        let mut picture = stage.scene().picture;
+        picture.background = view.background.unwrap_or(picture.background);
+        picture.light_angle = view.light_angle.unwrap_or(picture.light_angle);
+        picture.shutter = view.shutter.unwrap_or(picture.shutter);
         let strands = stage.simulated_strands().1 as f32;
         let width_scale = view.hair_width.unwrap_or((HEAD / strands).clamp(1.0, WIDEST));
-        let painter = match view.gpu {
-            false => Painter::Cpu(Box::new(Renderer::new(width, height))),
-            true => {
-                let card = Card::new(view.size)?;
-                stage.set_external_interpolation(card.renderer.gpu().can_place_among(stage.obstacles()));
-                Painter::Gpu(Box::new(card))
-            }
+        let mut studio = Self {
+            painter: Painter::Cpu(Box::new(Renderer::new(width, height))),
+            start: camera,
+            camera,
+            width_scale,
+            picture,
+            format: setup.format,
+            last: None,
+            image: Image::default(),
         };
-        Ok(Self { painter, start: camera, camera, width_scale })
+        if view.gpu {
+            if studio.is_linear() {
+                let text = "--gpu cannot draw motion blur, a transparent background or EXR files; draw this without --gpu";
+                return Err(Fault::Usage(text.into()));
+            }
+            let card = Card::new(view.size)?;
+            stage.set_external_interpolation(card.renderer.gpu().can_place_among(stage.obstacles()));
+            studio.painter = Painter::Gpu(Box::new(card));
+        }
+        Ok(studio)
+    }
+
+    /// Whether nothing is behind body and hair.
+    fn transparent(&self) -> bool {
+        match self.picture.background {
+            Background::Backdrop => false,
+            Background::Automatic => self.format == Format::Layers,
+            Background::Transparent => self.format != Format::Opaque,
+        }
+    }
+
+    /// Whether pictures are drawn in linear light first.
+    fn is_linear(&self) -> bool {
+        self.transparent() || self.format == Format::Layers || self.picture.shutter > 0.0
+    }
+
+    /// Whether the scene asks for a transparent background, and the files cannot hold one.
+    pub fn lacks_alpha(&self) -> bool {
+        self.picture.background == Background::Transparent && self.format == Format::Opaque
     }
 
     /// Name of the GPU that draws, if one does.
@@ -128,27 +219,103 @@ impl Studio {
     }
 
     /// Draws the current state of the stage.
-    pub fn draw(&mut self, stage: &Stage) -> Result<(&Image, Timings), Fault> {
-        let hair: Vec<HairDraw> =
+    pub fn draw(&mut self, stage: &Stage) -> Result<(Drawn<'_>, Timings), Fault> {
+        let camera = self.camera;
+        let current: Vec<HairDraw> =
             stage.strands().map(|s| HairDraw { width_scale: self.width_scale, ..HairDraw::of(s) }).collect();
         let body = stage.body().map(MeshDraw::of);
-        let frame = Frame {
-            hair: &hair,
+        let (picture, format, transparent) = (self.picture, self.format, self.transparent());
+        let linear = self.is_linear();
+        let now = Frame {
+            hair: &current,
             bodies: body.as_slice(),
-            camera: self.camera,
-            lighting: Lighting::facing(&self.camera),
-            background: Background::default(),
+            camera,
+            lighting: Lighting::of(&picture, &camera),
+            background: hairspring_view::Background::of(&picture),
             ground: Ground::of(stage.scene()),
             quality: Quality::default(),
         };
+        let (mut timings, mut layers) = (Timings::default(), None);
         match &mut self.painter {
-            Painter::Cpu(renderer) => {
-                renderer.draw(&frame);
-                Ok((renderer.image(), renderer.timings()))
+            Painter::Gpu(card) => timings = card.draw(&now)?,
+            Painter::Cpu(renderer) if !linear => {
+                renderer.draw(&now);
+                timings = renderer.timings();
             }
-            Painter::Gpu(card) => card.draw(&frame),
+            Painter::Cpu(renderer) => {
+                let last = self.last.as_ref().filter(|_| !stage.cut());
+                let color = match last.filter(|_| picture.shutter > 0.0) {
+                    Some(last) => blurred(renderer, &now, last, &picture, transparent, &mut timings),
+                    None => renderer.draw_linear(&now, transparent),
+                };
+                timings = sum(timings, renderer.timings());
+                if format == Format::Layers {
+                    let none = Moment { camera, ..Moment::default() };
+                    let geometry = last.unwrap_or(&none).geometry(renderer, &now);
+                    timings = sum(timings, renderer.timings());
+                    layers = Some(Box::new(Layers { color, geometry }));
+                } else {
+                    self.image = color.develop();
+                }
+            }
+        }
+        self.pass(stage);
+        let drawn = match (layers, &self.painter) {
+            (Some(layers), _) => Drawn::Layers(layers),
+            (None, Painter::Gpu(card)) => Drawn::Image(&card.image),
+            (None, Painter::Cpu(renderer)) if !linear => Drawn::Image(renderer.image()),
+            (None, Painter::Cpu(_)) => Drawn::Image(&self.image),
+        };
+        Ok((drawn, timings))
+    }
+
+    /// Passes over a frame that is not drawn: the motion of the next one begins here.
+    pub fn pass(&mut self, stage: &Stage) {
+        if self.format == Format::Layers || self.picture.shutter > 0.0 {
+            self.last.get_or_insert_default().fill(stage, self.camera);
         }
     }
+}
+
+impl Drawn<'_> {
+    /// The picture as it is shown.
+    pub fn image(&self) -> Cow<'_, Image> {
+        match self {
+            Self::Image(image) => Cow::Borrowed(image),
+            Self::Layers(layers) => Cow::Owned(layers.color.develop()),
+        }
+    }
+}
+
+/// Draws the mean of several moments from `last` to `now`. Adds the time of all but the last of them.
+fn blurred(
+    renderer: &mut Renderer,
+    now: &Frame,
+    last: &Moment,
+    picture: &Picture,
+    transparent: bool,
+    timings: &mut Timings,
+) -> LinearImage {
+    let mut color = LinearImage::default();
+    for k in 0..picture.shutter_samples {
+        if k > 0 {
+            *timings = sum(*timings, renderer.timings());
+        }
+        let weight = 1.0 / picture.shutter_samples as f32;
+        let before = picture.shutter / 360.0 * (k as f32 + 0.5) * weight;
+        let moment = last.toward(now, 1.0 - before);
+        let hair: Vec<HairDraw> = moment.hair(now.hair).collect();
+        let body = now.bodies.first().map(|body| moment.body(*body));
+        let (camera, bodies) = (moment.camera, body.as_slice());
+        let lighting = Lighting::of(picture, &camera);
+        let frame = Frame { hair: &hair, bodies, camera, lighting, ..*now };
+        color.add(&renderer.draw_linear(&frame, transparent), weight);
+    }
+    color
+}
+
+fn sum(a: Timings, b: Timings) -> Timings {
+    Timings { shadow: a.shadow + b.shadow, strands: a.strands + b.strands, tiles: a.tiles + b.tiles }
 }
 
 impl Card {
@@ -167,23 +334,24 @@ impl Card {
 
     /// Uploads and command recording count as work on strands; everything that the GPU does afterwards counts
     /// as work on tiles.
-    fn draw(&mut self, frame: &Frame) -> Result<(&Image, Timings), Fault> {
+    fn draw(&mut self, frame: &Frame) -> Result<Timings, Fault> {
         let start = Instant::now();
         self.renderer.draw(frame, self.size.0, self.size.1);
         let recorded = start.elapsed();
         self.image = self.renderer.read()?;
         let timings = Timings { strands: recorded, tiles: start.elapsed() - recorded, ..Timings::default() };
-        Ok((&self.image, timings))
+        Ok(timings)
     }
 }
 
-/// A camera that sees all hair, with a margin for motion.
-fn overview(stage: &Stage, aspect: f32) -> Camera {
-    let bounds = stage.strands().flat_map(|s| s.points.iter().copied()).fold(None, |b, p| {
-        let (low, high): (Vec3, Vec3) = b.unwrap_or((p, p));
-        Some((low.min(p), high.max(p)))
-    });
-    let (low, high) = bounds.unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
-    let room = Vec3::splat(0.06 * (high - low).length());
-    frame_camera((low - room, high + room), aspect)
+/// A camera that shows the subject over its whole motion, and from all sides if it will be turned.
+fn overview(stage: &Stage, aspect: f32, turned: bool) -> Camera {
+    let (mut low, mut high) = stage.subject_bounds().unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+    if turned {
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let reach = half.x.hypot(half.z);
+        let half = Vec3::new(reach, half.y, reach);
+        (low, high) = (middle - half, middle + half);
+    }
+    frame_camera((low, high), aspect)
 }

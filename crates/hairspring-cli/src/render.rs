@@ -9,7 +9,7 @@ use crate::{
     interrupt,
     manifest::{Manifest, Origin},
     output,
-    picture::{Studio, View},
+    picture::{Setup, Studio, View},
     play::{Ending, play},
     totals::{self, Totals},
 };
@@ -33,12 +33,14 @@ Examples:
   hairspring render shot.toml -o shot.mp4 --size 1920x1080 --fps 24
   hairspring render shot.toml -o frame.####.png --frames 20-80 --resume
   hairspring render shot.toml -o side.png --frames 60 --camera 1.2,1.6,0 --target 0,1.5,0
+  hairspring render shot.toml -o comp.####.exr --frames 1-120 --shutter 180
   hairspring render shot.toml -o turn.mp4 --turntable --frames 61-180")]
 pub struct Options {
     #[command(flatten)]
     input: Input,
 
-    /// File to write: still.png, still.jpg, numbered pictures such as frame.####.png, or clip.mp4
+    /// File to write: still.png, still.jpg, still.exr, numbered pictures such as frame.####.png or
+    /// frame.####.exr, or clip.mp4
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
 
@@ -159,7 +161,11 @@ pub fn shoot(
     let mut stage = Stage::new(scene)?;
     console.note_all(stage.thin_mesh());
     console.note_all(stage.starts_inside());
-    let mut studio = Studio::new(view, &mut stage)?;
+    let setup = Setup { turned: turn.is_some(), format: Sink::format(&sinks) };
+    let mut studio = Studio::new(view, &mut stage, setup)?;
+    if studio.lacks_alpha() {
+        console.note("clips and JPEG files have no transparency, so the backdrop is drawn; write PNG or EXR for a transparent background");
+    }
     if studio.width_scale() != 1.0 {
         console.note(format_args!(
             "{} hairs are drawn {:.2} times as wide as they are; set --hair-width to change it",
@@ -178,14 +184,16 @@ pub fn shoot(
     let ending = play(&mut stage, last, fps, |frame, stage, report| {
         totals.stepped(frame, report);
         let mut timings = None;
+        if let Some(turn) = turn.filter(|turn| frame >= turn.first) {
+            studio.turn((frame - turn.first) as f32 / turn.count() as f32);
+        }
         if wanted.binary_search(&frame).is_ok() {
-            if let Some(turn) = turn {
-                studio.turn((frame - turn.first) as f32 / turn.count() as f32);
-            }
-            let (image, times) = studio.draw(stage)?;
+            let (drawn, times) = studio.draw(stage)?;
             timings = Some(times);
-            film.show(frame, image)?;
+            film.show(frame, drawn)?;
             totals.drawn(times, studio.sent());
+        } else {
+            studio.pass(stage);
         }
         progress.step(|| {
             let drawn = timings.map_or(String::new(), |t| {
@@ -224,11 +232,11 @@ enum Kind {
 impl Kind {
     fn of(path: &Path) -> Result<Self, Fault> {
         match (output::extension(path).as_str(), output::is_sequence(path)) {
-            ("png", true) => Ok(Self::Pictures),
-            ("png" | "jpg", false) => Ok(Self::Still),
+            ("png" | "exr", true) => Ok(Self::Pictures),
+            ("png" | "jpg" | "exr", false) => Ok(Self::Still),
             ("mp4", false) => Ok(Self::Clip),
             _ => Err(Fault::Usage(format!(
-                "{}: unknown output; pictures are written as still.png, still.jpg or frame.####.png, clips as clip.mp4",
+                "{}: unknown output; pictures are written as still.png, still.jpg, still.exr, frame.####.png or frame.####.exr, clips as clip.mp4",
                 path.display()
             ))),
         }
@@ -237,7 +245,7 @@ impl Kind {
 
 /// The options that change pictures, for their manifest.
 fn all_options(options: &Options, range: FrameRange) -> Vec<(&'static str, Option<String>)> {
-    let View { size, camera, target, fov, hair_width, gpu } = &options.view;
+    let View { size, camera, target, fov, background, light_angle, shutter, hair_width, gpu } = &options.view;
     let point = |p: glam::Vec3| format!("{},{},{}", p.x, p.y, p.z);
     let set = |flag: bool| flag.then(|| "set".to_owned());
     let mut all = options.input.options().to_vec();
@@ -247,6 +255,9 @@ fn all_options(options: &Options, range: FrameRange) -> Vec<(&'static str, Optio
         ("camera", camera.map(point)),
         ("target", target.map(point)),
         ("fov", fov.map(|fov| fov.to_string())),
+        ("background", background.map(|background| background.name().to_owned())),
+        ("light-angle", light_angle.map(|angle| angle.to_string())),
+        ("shutter", shutter.map(|shutter| shutter.to_string())),
         ("hair-width", hair_width.map(|width| width.to_string())),
         ("gpu", set(*gpu)),
         ("turntable", set(options.turntable)),

@@ -7,6 +7,7 @@ mod color;
 mod ground;
 mod hand;
 mod look;
+mod picture;
 mod settings;
 pub mod stage;
 
@@ -15,6 +16,7 @@ pub use color::{color_from_hex, deserialize_color, deserialize_optional_color};
 pub use ground::Ground;
 pub use hand::Hand;
 pub use look::{HairColor, HairLook};
+pub use picture::{Background, Picture};
 pub use settings::{Collider, Guides, InitialContact, Shape};
 
 use glam::Vec3;
@@ -100,6 +102,8 @@ pub struct Scene {
     pub neighbours: Neighbours,
     /// Camera; `None`: the scene is framed automatically.
     pub camera: Option<Camera>,
+    /// Backdrop, light and shutter of pictures.
+    pub picture: Picture,
     /// The ground plane that is drawn.
     pub ground: Ground,
     /// Hands that act on the hair with a manipulator.
@@ -134,6 +138,7 @@ impl Scene {
             ("solver".into(), &self.solver),
             ("volume".into(), &self.volume),
             ("neighbours".into(), &self.neighbours),
+            ("picture".into(), &self.picture),
             ("ground".into(), &self.ground),
         ];
         for (k, groom) in self.grooms.iter().enumerate() {

@@ -89,6 +89,17 @@ pub struct Frame<'a> {
     pub quality: Quality,
 }
 
+/// Where points were in an earlier frame, for motion vectors.
+#[derive(Clone, Copy, Debug)]
+pub struct Before<'a> {
+    /// The camera.
+    pub camera: Camera,
+    /// Points of each hairstyle [m]; shape as in [`HairDraw::points`]. What is missing did not move.
+    pub hair: &'a [&'a [Vec3]],
+    /// Vertices of each body [m]; shape as in [`MeshDraw::positions`]. What is missing did not move.
+    pub bodies: &'a [&'a [Vec3]],
+}
+
 impl Frame<'_> {
     /// The ground, if the camera is above it.
     pub(crate) fn ground_seen(&self) -> Option<Ground> {

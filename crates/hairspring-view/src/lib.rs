@@ -9,6 +9,7 @@
 //! | `shadow` | splats hair into a density grid and sweeps it along each lamp; draws bodies into a depth map | Yuksel & Keyser 2008, Reeves et al. 1987 |
 //! | `hair` | projects strands and sorts them into tiles; lights and smooths what a tile shows | Marschner et al. 2003, Karis 2016 |
 //! | `tile` | blends a tile's segments nearest first over body, ground and backdrop, until the pixels are opaque | exact area coverage |
+//! | `pass` | what a pixel holds: 8 bits of sRGB, linear light with alpha, or depth and motion | |
 //! | `tonemap` | filmic curve, sRGB, ordered dither | ACES |
 //!
 //! Coverage is exact area and not sampled, so there is no noise and no flicker. Blending is in depth order,
@@ -40,7 +41,9 @@ mod ground;
 mod hair;
 mod image;
 mod lighting;
+mod linear;
 mod output;
+mod pass;
 mod renderer;
 mod shadow;
 mod sort;
@@ -49,10 +52,13 @@ mod tonemap;
 mod work;
 
 pub use camera::frame_camera;
-pub use frame::{Frame, HairDraw, MeshDraw, Quality};
+pub use frame::{Before, Frame, HairDraw, MeshDraw, Quality};
 pub use ground::Ground;
 pub use image::Image;
 pub use lighting::{Background, Light, Lighting};
-pub use output::{ClipWriter, OutputError, encode_png, read_png, sequence_path, write_jpeg, write_png};
+pub use linear::{GeometryImage, LinearImage};
+pub use output::{
+    ClipWriter, Layers, OutputError, encode_png, read_png, sequence_path, write_exr, write_jpeg, write_png,
+};
 pub use renderer::{Renderer, Timings};
 pub use work::Work;

@@ -1,7 +1,7 @@
 //! The light of a picture: three lamps and a sky.
 
 use glam::{Quat, Vec3};
-use hairspring_scene::Camera;
+use hairspring_scene::{Camera, Picture};
 
 /// A directional lamp.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,18 +44,26 @@ impl Default for Lighting {
 }
 
 impl Lighting {
+    /// The light of a scene: that of a camera on +Z, turned with `camera` about the vertical axis, and by the
+    /// scene's light angle.
+    pub fn of(picture: &Picture, camera: &Camera) -> Self {
+        Self::facing(camera).turned(picture.light_angle)
+    }
+
     /// The default light, rotated about the vertical axis, so that it illuminates the target of `camera` as
     /// it does for a camera on +Z.
     pub fn facing(camera: &Camera) -> Self {
         let back = camera.position - camera.target;
-        let turn = Quat::from_rotation_y(back.x.atan2(back.z));
-        let mut lighting = Self::default();
-        if turn.is_finite() {
-            for light in [&mut lighting.key, &mut lighting.fill, &mut lighting.rim] {
-                light.direction = turn * light.direction;
-            }
-        }
-        lighting
+        let angle = back.x.atan2(back.z).to_degrees();
+        if angle.is_finite() { Self::default().turned(angle) } else { Self::default() }
+    }
+
+    /// The same light with all lamps turned about the vertical axis by `angle` [degrees], counterclockwise as
+    /// seen from above.
+    pub fn turned(self, angle: f32) -> Self {
+        let turn = Quat::from_rotation_y(angle.to_radians());
+        let lamp = |light: Light| Light { direction: turn * light.direction, ..light };
+        Self { key: lamp(self.key), fill: lamp(self.fill), rim: lamp(self.rim), ..self }
     }
 }
 
@@ -68,8 +76,16 @@ pub struct Background {
     pub edge: Vec3,
 }
 
+impl Background {
+    /// The backdrop of a scene.
+    pub fn of(picture: &Picture) -> Self {
+        Self { center: picture.backdrop_center, edge: picture.backdrop_edge }
+    }
+}
+
 impl Default for Background {
     fn default() -> Self {
-        Self { center: Vec3::new(0.16, 0.165, 0.18), edge: Vec3::new(0.035, 0.036, 0.042) }
+        let Picture { backdrop_center, backdrop_edge, .. } = Picture::default();
+        Self { center: backdrop_center, edge: backdrop_edge }
     }
 }

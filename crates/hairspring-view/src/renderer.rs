@@ -3,7 +3,7 @@
 use crate::{
     body::Bodies,
     camera::View,
-    frame::{Frame, HairDraw},
+    frame::{Before, Frame, HairDraw},
     ground::Floor,
     hair::{
         color::{self, Colors},
@@ -14,6 +14,8 @@ use crate::{
         wisp::Wisp,
     },
     image::Image,
+    linear::{GeometryImage, LinearImage},
+    pass::{Geometry, Linear, Pass, Screen},
     shadow::{self, Shadow},
     tile::{Brush, PIXELS, SIDE, Strands, Tiles},
     tonemap::Encoder,
@@ -43,6 +45,17 @@ pub struct Renderer {
     work: Work,
 }
 
+/// Which shadows a frame needs.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Shadows {
+    /// Those of hair and bodies.
+    All,
+    /// Those of bodies; that of the hair is kept from the previous frame.
+    Bodies,
+    /// None are used.
+    Kept,
+}
+
 /// Time of the last frame, by stage.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timings {
@@ -64,7 +77,7 @@ impl Renderer {
 
     /// Draws a frame. The same frame gives the same bytes on any number of threads.
     pub fn draw(&mut self, frame: &Frame) -> &Image {
-        self.draw_in(frame, true)
+        self.draw_screen(frame, Shadows::All)
     }
 
     /// Like [`Renderer::draw`], but with the hair shadow of the previous frame. It is meant for fast previews
@@ -72,19 +85,58 @@ impl Renderer {
     /// frame's lamps, which is not visible, because the shadow is soft. Shadows of bodies are up to date: a
     /// lag would be visible as spots on them.
     pub fn draw_on(&mut self, frame: &Frame) -> &Image {
-        self.draw_in(frame, false)
+        self.draw_screen(frame, Shadows::Bodies)
     }
 
-    fn draw_in(&mut self, frame: &Frame, shadows: bool) -> &Image {
+    /// Draws a frame in linear light. If `transparent`, nothing is behind hair and bodies: the backdrop is
+    /// left out, and the ground holds only its shadow and color.
+    pub fn draw_linear(&mut self, frame: &Frame, transparent: bool) -> LinearImage {
+        let Image { width, height, .. } = self.image;
+        let rgba = self.draw_pixels(&Linear { transparent }, frame, Shadows::All);
+        LinearImage { width, height, rgba }
+    }
+
+    /// Draws the depth of a frame, and its motion since an earlier one. Where strands or surfaces share a
+    /// pixel, both are averages, weighted by coverage. The ground and the backdrop have none.
+    pub fn draw_geometry(&mut self, frame: &Frame, before: &Before) -> GeometryImage {
+        let view = View::new(&before.camera, self.image.width, self.image.height);
+        GeometryImage::new(&self.draw_pixels(&Geometry { before, view }, frame, Shadows::Kept))
+    }
+
+    fn draw_pixels<P: Pass>(&mut self, pass: &P, frame: &Frame, shadows: Shadows) -> Vec<P::Pixel> {
+        let mut tiles = Vec::new();
+        self.draw_tiles(pass, frame, shadows, &mut tiles);
+        let [width, height] = self.tiles.size();
+        let mut pixels = vec![P::Pixel::default(); width * height];
+        copy_rows(self.tiles, &tiles, &mut pixels);
+        pixels
+    }
+
+    fn draw_screen(&mut self, frame: &Frame, shadows: Shadows) -> &Image {
+        let encoder = std::mem::take(&mut self.encoder);
+        let mut tiles = std::mem::take(&mut self.drawn);
+        self.draw_tiles(&Screen { encoder: &encoder }, frame, shadows, &mut tiles);
+        copy_rows(self.tiles, &tiles, self.image.rgb.as_chunks_mut().0);
+        (self.encoder, self.drawn) = (encoder, tiles);
+        &self.image
+    }
+
+    fn draw_tiles<P: Pass>(
+        &mut self,
+        pass: &P,
+        frame: &Frame,
+        shadows: Shadows,
+        drawn: &mut Vec<[P::Pixel; PIXELS]>,
+    ) {
         let start = Instant::now();
         let [width, height] = self.tiles.size();
         let view = View::new(&frame.camera, width as u32, height as u32);
         let bounds = shadow::bounds(&frame.hair.iter().map(|h| h.points).collect::<Vec<_>>());
         self.order.fill(frame, bounds.unwrap_or_default());
-        if shadows || self.shadow.is_empty() {
-            self.shadow.fill(frame, bounds, &self.order);
-        } else {
-            self.shadow.fill_bodies(frame);
+        match shadows {
+            Shadows::Kept => {}
+            Shadows::Bodies if !self.shadow.is_empty() => self.shadow.fill_bodies(frame),
+            Shadows::Bodies | Shadows::All => self.shadow.fill(frame, bounds, &self.order),
         }
         let shaded = Instant::now();
 
@@ -112,7 +164,7 @@ impl Renderer {
         self.dots.resize(self.order.slots(), Dot::END);
         self.colors.clear(self.order.slots());
         let dots = self.order.split(&mut self.dots);
-        let (chunks, bodies, tiles) = (&mut self.chunks, &mut self.bodies, &mut self.drawn);
+        let (chunks, bodies) = (&mut self.chunks, &mut self.bodies);
         rayon::join(
             || {
                 chunks
@@ -126,7 +178,7 @@ impl Renderer {
         );
         let cut = Instant::now();
 
-        tiles.resize(self.tiles.count(), [[0; 3]; PIXELS]);
+        drawn.resize(self.tiles.count(), [P::Pixel::default(); PIXELS]);
         let strands = Strands {
             chunks,
             dots: &self.dots,
@@ -134,26 +186,17 @@ impl Renderer {
             reach: chunks.iter().fold(0.0, |far, chunk| chunk.reach.max(far)),
             widest: chunks.iter().fold(0.0, |most, chunk| chunk.widest.max(most)),
         };
-        let (bodies, encoder) = (&*bodies, &self.encoder);
-        let drawn = tiles.par_iter_mut().enumerate().map_init(Brush::default, |brush, (tile, out)| {
-            brush.draw(&setup, bodies, &strands, encoder, tile, out)
+        let bodies = &*bodies;
+        let work = drawn.par_iter_mut().enumerate().map_init(Brush::default, |brush, (tile, out)| {
+            brush.draw(pass, &setup, bodies, &strands, tile, out)
         });
         self.work = Work {
             segments: frame.hair.iter().map(HairDraw::segment_count).sum(),
             pixels: (width * height) as u64,
-            ..drawn.reduce(Work::default, Work::add)
+            ..work.reduce(Work::default, Work::add)
         };
         self.work.lit = self.colors.lit() * LANES as u64;
-        let [nx, _] = self.tiles.grid();
-        let tiles = &*tiles;
-        self.image.rgb.par_chunks_mut(width * 3).enumerate().for_each(|(y, row)| {
-            for (x, out) in row.chunks_mut(SIDE * 3).enumerate() {
-                let from = &tiles[y / SIDE * nx + x][y % SIDE * SIDE..][..out.len() / 3];
-                out.copy_from_slice(from.as_flattened());
-            }
-        });
         self.timings = Timings { shadow: shaded - start, strands: cut - shaded, tiles: cut.elapsed() };
-        &self.image
     }
 
     /// The last picture; black before the first.
@@ -170,4 +213,14 @@ impl Renderer {
     pub fn work(&self) -> Work {
         self.work
     }
+}
+
+/// Copies the pixels of tiles to a picture, row by row.
+fn copy_rows<T: Copy + Send + Sync>(tiles: Tiles, drawn: &[[T; PIXELS]], picture: &mut [T]) {
+    let ([width, _], [nx, _]) = (tiles.size(), tiles.grid());
+    picture.par_chunks_mut(width).enumerate().for_each(|(y, row)| {
+        for (x, out) in row.chunks_mut(SIDE).enumerate() {
+            out.copy_from_slice(&drawn[y / SIDE * nx + x][y % SIDE * SIDE..][..out.len()]);
+        }
+    });
 }

@@ -9,12 +9,12 @@ use crate::{
         segment::{Dot, Segment},
         shade::LANES,
     },
+    pass::Pass,
     sort::Buckets,
-    tonemap::{Encoder, filmic},
     work::Work,
 };
 use fearless_simd::dispatch;
-use glam::{Vec2, Vec4};
+use glam::Vec2;
 
 /// Side of a tile [pixels].
 pub(crate) const SIDE: usize = 32;
@@ -122,7 +122,14 @@ fn rank(slot: usize) -> f32 {
 /// Draws a tile's segments, nearest first, until all pixels are opaque. Closed patches cost nothing: their
 /// segments are not sorted, fetched or lit.
 #[inline(always)]
-fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut Buckets, origin: Vec2) {
+fn lay_hair<P: Pass>(
+    pass: &P,
+    setup: &Setup,
+    strands: &Strands,
+    canvas: &mut Canvas,
+    buckets: &mut Buckets,
+    origin: Vec2,
+) {
     let tolerance = setup.frame.quality.smoothness.clamp(0.02, 4.0);
     let walls = walls(canvas);
     let mut next_wall = nearest_from(&walls, f32::NEG_INFINITY);
@@ -156,7 +163,7 @@ fn lay_hair(setup: &Setup, strands: &Strands, canvas: &mut Canvas, buckets: &mut
             }
             for (from, e) in fetched.iter().zip(few) {
                 let wider = 1.0 / thinned(canvas.through_any(e.patches()), strands.widest);
-                let color = strands.colors.open(setup, e.slot(), from.colors);
+                let color = pass.hair(setup, strands.colors, e.slot(), from.colors);
                 let segment = Segment::new(&from.dots, origin);
                 let mut pieces = segment.pieces(tolerance, color);
                 if setup.wisp.is_one() {
@@ -250,15 +257,15 @@ fn lay_walls(canvas: &mut Canvas, walls: &[f32; PATCHES * PATCHES], depth: f32) 
 }
 
 impl Brush {
-    /// Draws one tile and writes its pixels, row by row, three bytes each.
-    pub fn draw(
+    /// Draws one tile and writes its pixels, row by row.
+    pub fn draw<P: Pass>(
         &mut self,
+        pass: &P,
         setup: &Setup,
         bodies: &Bodies,
         strands: &Strands,
-        encoder: &Encoder,
         tile: usize,
-        out: &mut [[u8; 3]; PIXELS],
+        out: &mut [P::Pixel; PIXELS],
     ) -> Work {
         let corner = setup.tiles.corner(tile);
         *self.canvas = Canvas::default();
@@ -281,7 +288,7 @@ impl Brush {
         }
         self.buckets.fill(strands.chunks.iter().map(|c| c.tile(tile)));
         let origin = Vec2::new(corner[0] as f32, corner[1] as f32);
-        dispatch!(setup.level, _simd => lay_hair(setup, strands, canvas, &mut self.buckets, origin));
+        dispatch!(setup.level, _simd => lay_hair(pass, setup, strands, canvas, &mut self.buckets, origin));
         if body {
             let lit = Lit { frame: setup.frame, view: &setup.view, shadow: setup.shadow, level: setup.level };
             for i in (0..PIXELS).filter(|i| self.surfaces[*i].cover > 0.0) {
@@ -291,21 +298,20 @@ impl Brush {
                 let seen = canvas.body_seen[i];
                 // Surfaces hidden by hair need no lighting.
                 if seen > CLOSED {
-                    let color = bodies.light(&lit, corner, &self.samples, i);
+                    let color = pass.body(&lit, bodies, corner, &self.samples, i);
                     canvas.pixels[i] += (color * (self.surfaces[i].cover * seen)).extend(0.0);
                 }
             }
         }
-        dispatch!(setup.level, _simd => self.develop(setup, encoder, corner, out));
+        dispatch!(setup.level, _simd => self.develop(pass, setup, corner, out));
         Work { filed: strands.chunks.iter().map(|c| c.tile(tile).len() as u64).sum(), ..self.canvas.work }
     }
 
-    /// Adds ground and backdrop, and applies exposure, tone curve and conversion to 8 bits.
+    /// Adds ground and backdrop, and makes the pixels of the picture.
     #[inline(always)]
-    fn develop(&self, setup: &Setup, encoder: &Encoder, corner: [usize; 2], out: &mut [[u8; 3]; PIXELS]) {
+    fn develop<P: Pass>(&self, pass: &P, setup: &Setup, corner: [usize; 2], out: &mut [P::Pixel; PIXELS]) {
         let [w, h] = setup.tiles.size().map(|n| n as f32);
         let backdrop = &setup.frame.background;
-        let gain = setup.frame.lighting.exposure.exp2();
         // The pool of light falls off smoothly and is flat at the center. It is a product of one factor per
         // column and one per row.
         let pool = |from: f32| (-3.2 * from * from).exp();
@@ -313,15 +319,9 @@ impl Brush {
         for (y, row) in out.chunks_mut(SIDE).enumerate() {
             let down = pool((corner[1] + y) as f32 / h - 0.42);
             for (x, out) in row.iter_mut().enumerate() {
-                let pixel: Vec4 = self.canvas.pixels[y * SIDE + x];
-                let mut behind = backdrop.edge.lerp(backdrop.center, columns[x] * down);
-                // Opaque pixels need no background.
-                if let Some(floor) = setup.floor.filter(|_| pixel.w > CLOSED) {
-                    let at = Vec2::new((corner[0] + x) as f32 + 0.5, (corner[1] + y) as f32 + 0.5);
-                    behind = floor.over(behind, &setup.view, at, setup.shadow, setup.level);
-                }
-                let light = pixel.truncate() + behind * pixel.w;
-                *out = encoder.encode(filmic(light * gain), corner[0] + x, corner[1] + y);
+                let wall = backdrop.edge.lerp(backdrop.center, columns[x] * down);
+                let at = [corner[0] + x, corner[1] + y];
+                *out = pass.pixel(setup, at, self.canvas.pixels[y * SIDE + x], wall);
             }
         }
     }

@@ -131,8 +131,8 @@ fn still(stage: &Stage, renderer: &mut Renderer) -> hairspring_view::Image {
         hair: &hair,
         bodies: body.as_slice(),
         camera,
-        lighting: Lighting::facing(&camera),
-        background: Background::default(),
+        lighting: Lighting::of(&stage.scene().picture, &camera),
+        background: Background::of(&stage.scene().picture),
         ground: Ground::of(stage.scene()),
         quality: Quality { shadow_voxels: 48, ..Quality::default() },
     };

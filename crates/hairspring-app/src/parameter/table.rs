@@ -121,6 +121,12 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "camera.position", "Camera position", Kind::Vector { reach: 10.0 };
         Scene "camera.target", "Camera target", Kind::Vector { reach: 10.0 };
         Scene "camera.fov", "Field of view", number(5.0, 90.0);
+        Scene "picture.light_angle", "Light angle", number(-180.0, 180.0);
+        Scene "picture.background", "Background", Kind::Choice;
+        Scene "picture.backdrop_center", "Backdrop center", Kind::Color;
+        Scene "picture.backdrop_edge", "Backdrop edge", Kind::Color;
+        Scene "picture.shutter", "Shutter", number(0.0, 360.0);
+        Scene "picture.shutter_samples", "… samples", Kind::Count { min: 2, max: 64 };
     }
     Solver {
         Scene "solver.integrator", "Integrator", Kind::Choice;

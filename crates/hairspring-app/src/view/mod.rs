@@ -138,8 +138,8 @@ impl View {
         })
     }
 
-    /// Sets the camera for a newly opened scene, from its file or so that all hair is visible, and when the
-    /// scene's camera is changed.
+    /// Sets the camera for a newly opened scene, from its file or so that hair and head stay visible, and when
+    /// the scene's camera is changed.
     pub fn meet(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
         // A snapshot of the previous scene does not belong to the opened one.
         if self.framed != snapshot.scene && snapshot.scene >= session.begun() {
@@ -161,14 +161,12 @@ impl View {
         }
     }
 
-    /// Frames all hair.
+    /// Frames hair and head over the whole motion.
     pub fn frame(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
         let own = session.document().settings().camera;
-        let bounds =
-            snapshot.stages.first().and_then(StageSnapshot::bounds).unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
-        let room = Vec3::splat(0.06 * (bounds.1 - bounds.0).length());
-        let camera =
-            own.unwrap_or_else(|| frame_camera((bounds.0 - room, bounds.1 + room), aspect.max(NARROW)));
+        let bounds = snapshot.stages.first().and_then(|stage| stage.still.subject);
+        let bounds = bounds.unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+        let camera = own.unwrap_or_else(|| frame_camera(bounds, aspect.max(NARROW)));
         self.orbit = Some(Orbit::new(&camera));
     }
 

@@ -10,7 +10,7 @@ use crate::{
     input::{self, tell},
     manifest::Inputs,
     output,
-    picture::{Studio, View},
+    picture::{Setup, Studio, View},
     render::clip,
     totals::grouped,
 };
@@ -265,9 +265,8 @@ impl Picture {
                 size: (half_width, half_height),
                 camera: options.camera,
                 target: options.target,
-                fov: None,
-                hair_width: None,
                 gpu: options.gpu,
+                ..View::default()
             },
             image: Image::new(width, height * rows),
             rows: 0,
@@ -285,7 +284,7 @@ impl Picture {
         paths: &[PathBuf; 2],
     ) -> Result<(), Fault> {
         for stage in stages {
-            let mut studio = Studio::new(&self.view, stage)?;
+            let mut studio = Studio::new(&self.view, stage, Setup::PLAIN)?;
             if let Some(first) = self.studios.first() {
                 studio.look_like(first);
             }
@@ -303,11 +302,12 @@ impl Picture {
     fn frame(&mut self, frame: u32, frames: u32, stages: &[Stage; 2]) -> Result<(), Fault> {
         let moment = |f: u32| u64::from(f) * u64::from(MOMENTS) / u64::from(frames);
         if self.clip.is_none() && moment(frame) == moment(frame - 1) {
+            self.studios.iter_mut().zip(stages).for_each(|(studio, stage)| studio.pass(stage));
             return Ok(());
         }
         let mut halves = Vec::with_capacity(2);
         for (studio, stage) in self.studios.iter_mut().zip(stages) {
-            halves.push(studio.draw(stage)?.0.clone());
+            halves.push(studio.draw(stage)?.0.image().into_owned());
         }
         let [a, b] = &halves[..] else { return Ok(()) };
         let captions = self.captions.each_ref().map(|caption| match self.clip {

@@ -12,6 +12,7 @@ mod grooms_convert_exactly;
 mod info_reports_what_a_file_holds;
 mod interrupts_leave_nothing_partial;
 mod pictures_and_clips_are_written;
+mod pictures_hold_alpha_depth_and_motion;
 mod resume_checks_inputs_and_frames;
 mod standard_output_errors_are_reported;
 mod validate_compares_with_closed_forms;

@@ -113,17 +113,23 @@ impl LeftOut {
             );
         }
         if self.others > 0 {
+            let (channels, they_move) = left_out(self.others);
             notes.push(format!(
-                "{} animation channels are left out, because they move no joint of the scene; animate joints instead",
-                self.others
+                "{channels}, because {they_move} no joint of the scene; animate joints instead"
             ));
         }
         if self.repeated > 0 {
-            notes.push(format!(
-                "{} animation channels are left out, because a later one moves the same joint; export each once",
-                self.repeated
-            ));
+            let (channels, _) = left_out(self.repeated);
+            notes.push(format!("{channels}, because a later one moves the same joint; export each once"));
         }
+    }
+}
+
+/// A number of animation channels that are left out, and "they move" for it.
+fn left_out(count: usize) -> (String, &'static str) {
+    match count {
+        1 => ("1 animation channel is left out".into(), "it moves"),
+        n => (format!("{n} animation channels are left out"), "they move"),
     }
 }
 

@@ -118,6 +118,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     if let Some(camera) = &scene.camera {
         in_range(text, section("[camera]"), camera)?;
     }
+    in_range(text, section("[picture]"), &scene.picture)?;
     in_range(text, section("[ground]"), &scene.ground)?;
     for (hand, line) in scene.hand.iter().zip(lines(text, "[[hand]]")) {
         in_range(text, line, hand)?;

@@ -9,7 +9,7 @@ use hairspring::{
     settings::{Effects, Neighbours, Setting, Solver, Volume, When, Wind, define_settings},
 };
 use hairspring_scene::{
-    Camera, Collider, Ground, Guides, Hand, InitialContact, SceneSheet, deserialize_optional_color,
+    Camera, Collider, Ground, Guides, Hand, InitialContact, Picture, SceneSheet, deserialize_optional_color,
 };
 use serde::{Deserialize, Deserializer};
 use std::{collections::BTreeMap, path::PathBuf};
@@ -82,6 +82,9 @@ define_settings! {
         neighbours: Neighbours, "none", {table};
         /// The camera. By default, the scene is framed automatically.
         camera: Option<Camera>, "none", {table};
+        /// Backdrop, light and shutter of pictures.
+        #[serde(default)]
+        picture: Picture, "none", {table};
         /// The ground in the picture.
         #[serde(default)]
         ground: Ground, "none", {table};

@@ -11,7 +11,7 @@ use hairspring::{
     material::{Material, PRESETS},
     settings::{Effects, Fields, Neighbours, Parameter, Range, Setting, Solver, Volume, When, Wind},
 };
-use hairspring_scene::{Camera, Collider, Ground, HairLook, Hand};
+use hairspring_scene::{Camera, Collider, Ground, HairLook, Hand, Picture};
 use std::{collections::BTreeMap, sync::LazyLock};
 
 /// The preset of a material. It selects the values that a material does not set, so no material stores it.
@@ -29,7 +29,7 @@ const PRESET: Parameter = Parameter {
 };
 
 /// The tables of a scene file, and the parameters in each.
-const TABLES: [(&str, &[Parameter]); 25] = [
+const TABLES: [(&str, &[Parameter]); 26] = [
     ("", SceneFile::PARAMETERS),
     ("builtin", BuiltinFile::PARAMETERS),
     ("body", BodyFile::PARAMETERS),
@@ -54,6 +54,7 @@ const TABLES: [(&str, &[Parameter]); 25] = [
     ("volume", Volume::PARAMETERS),
     ("neighbours", Neighbours::PARAMETERS),
     ("camera", Camera::PARAMETERS),
+    ("picture", Picture::PARAMETERS),
     ("ground", Ground::PARAMETERS),
 ];
 
@@ -155,7 +156,7 @@ mod tests {
 
     #[test]
     fn every_default_is_in_its_range() {
-        let settings: [&dyn hairspring::settings::Validate; 14] = [
+        let settings: [&dyn hairspring::settings::Validate; 15] = [
             &Solver::default(),
             &Volume::default(),
             &Neighbours::default(),
@@ -167,6 +168,7 @@ mod tests {
             &Thicken::default(),
             &Growth::default(),
             &HairLook::default(),
+            &Picture::default(),
             &Ground::default(),
             &Camera::default(),
             &hairspring::material::GlobalShape::default(),

@@ -39,6 +39,7 @@ impl Reader<'_> {
             volume: file.volume,
             neighbours: file.neighbours,
             camera: file.camera.or(base.camera),
+            picture: file.picture,
             ground: file.ground,
             hands: file.hand.clone(),
             ..Scene::default()

@@ -15,7 +15,7 @@ use hairspring::{
     settings::{Effects, Neighbours, Solver, Volume, Wind},
 };
 use hairspring_io::scene::{check_text, parameters as definitions};
-use hairspring_scene::{Camera, Collider, Ground, HairLook, Hand};
+use hairspring_scene::{Camera, Collider, Ground, HairLook, Hand, Picture};
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -241,6 +241,7 @@ fn defaults() -> BTreeMap<String, Value> {
     defaults_of::<Volume>("volume", "", &mut all);
     defaults_of::<Neighbours>("neighbours", "", &mut all);
     defaults_of::<Camera>("camera", "position = [1, 0, 0]\ntarget = [0, 0, 0]", &mut all);
+    defaults_of::<Picture>("picture", "", &mut all);
     defaults_of::<Ground>("ground", "", &mut all);
     let place = "center = [0, 0, 0]\nradius = 1\n";
     let ring = format!("{place}axis = [0, 1, 0]\n");

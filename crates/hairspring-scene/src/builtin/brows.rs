@@ -1,4 +1,4 @@
-//! Eyebrows and eyelashes: a few hundred short hairs that make the face look natural.
+//! Eyebrows, eyelashes and the fine hair of the hairline: short hairs that make the face look natural.
 
 use super::{random::Random, sdf::smoothstep, shape};
 use glam::{Vec2, Vec3, vec2, vec3};
@@ -8,6 +8,14 @@ use hairspring::groom::Groom;
 const BROW_HAIRS: u32 = 420;
 /// Number of hairs on one upper lid; a real one has 90 to 150.
 const LASHES: u32 = 110;
+/// Number of fine hairs on each half of the hairline.
+const FINE_HAIRS: u32 = 560;
+/// Width of the band below the hairline in which they grow [m].
+const FINE_BAND: f32 = 0.009;
+/// Angle around the head at which they end, in front of the ear [rad].
+const FINE_END: f32 = 1.2;
+/// Thickness of fine hair, relative to that of brows [1].
+const FINE: f32 = 0.5;
 /// Points per hair.
 const POINTS: usize = 6;
 /// Radius at the root [m]: brow hairs and lashes are coarser than scalp hair.
@@ -23,7 +31,7 @@ const BROW: [(Vec2, f32); 5] = [
     (vec2(0.0485, 0.0185), 0.0007),
 ];
 
-/// Creates both brows and the lashes of both upper lids.
+/// Creates both brows, the lashes of both upper lids, and the fine hair of the hairline.
 pub fn groom(seed: u32) -> Groom {
     let mut strands = Vec::new();
     let mut groups = Vec::new();
@@ -36,14 +44,20 @@ pub fn groom(seed: u32) -> Groom {
             strands.push(lash(side, i, Random::new(seed, 7, i * 2 + u32::from(side > 0.0))));
             groups.push(1);
         }
+        for i in 0..FINE_HAIRS {
+            strands.push(fine_hair(side, Random::new(seed, 8, i * 2 + u32::from(side > 0.0))));
+            groups.push(2);
+        }
     }
     let mut groom = Groom::from_strands(&strands, RADIUS);
-    for strand in groom.radii.chunks_exact_mut(POINTS) {
+    for (strand, group) in groom.radii.chunks_exact_mut(POINTS).zip(&groups) {
+        let thickness = if *group == 2 { FINE } else { 1.0 };
         // Pointed tips: these hairs are never cut.
-        strand.iter_mut().enumerate().for_each(|(k, r)| *r *= 1.0 - 0.8 * k as f32 / (POINTS - 1) as f32);
+        let taper = |k: usize| thickness * (1.0 - 0.8 * k as f32 / (POINTS - 1) as f32);
+        strand.iter_mut().enumerate().for_each(|(k, r)| *r *= taper(k));
     }
     groom.groups = groups;
-    groom.group_names = vec!["brows".into(), "lashes".into()];
+    groom.group_names = vec!["brows".into(), "lashes".into(), "hairline".into()];
     groom
 }
 
@@ -74,6 +88,30 @@ fn lash(side: f32, i: u32, mut random: Random) -> [Vec3; POINTS] {
     let heading = vec3(0.35 * u + 0.1 + 0.06 * random.normal(), -0.35, 1.0).normalize();
     let length = random.within(0.0055, 0.0075) * (0.75 + 0.25 * smoothstep(-1.0, 0.3, u));
     strand(root, heading, vec3(0.15 * u + 0.1, 0.85, 0.1), length, side)
+}
+
+/// Creates a fine hair below the hairline on `side` (1: left): short, and combed back with the hair above it.
+fn fine_hair(side: f32, mut random: Random) -> [Vec3; POINTS] {
+    // Densest at the hairline.
+    let below = random.unit() * random.unit();
+    let angle = random.unit() * FINE_END;
+    let root = skin_at(angle, shape::hairline(angle) - 0.0005 - FINE_BAND * below);
+    let normal = shape::normal(root);
+    let away = vec3(0.5 + 0.25 * random.normal(), 1.0, -0.4 + 0.2 * random.normal());
+    let heading =
+        (away.reject_from(normal).normalize_or(Vec3::Y) + normal * random.within(0.15, 0.4)).normalize();
+    let length = random.within(0.010, 0.022) * (1.0 - 0.6 * below);
+    strand(root, heading, vec3(0.3 * random.normal(), 0.0, -0.3) - normal * 0.5, length, side)
+}
+
+/// Returns the point of the skin at an angle around the head [rad] and a height [m], found by marching in.
+fn skin_at(angle: f32, height: f32) -> Vec3 {
+    let out = vec3(angle.sin(), 0.0, angle.cos());
+    let mut p = vec3(0.0, height, shape::HAIRLINE_CENTER) + out * 0.13;
+    for _ in 0..80 {
+        p -= out * shape::distance(p) * 0.8;
+    }
+    p
 }
 
 /// Creates a hair of the left side, or its mirror image, that leaves `root` along `heading` and bends by

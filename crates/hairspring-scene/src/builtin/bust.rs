@@ -136,6 +136,16 @@ fn color(mesh: &mut Mesh) {
     }
 }
 
+/// Darkens the scalp: between dense hair it is seen through the shafts near the roots. `hair`: their color,
+/// linear RGB.
+pub fn shade_scalp(mesh: &mut Mesh, hair: Vec3) {
+    /// Fraction of the scalp that the shafts hide.
+    const HIDDEN: f32 = 0.85;
+    for part in mesh.parts.iter_mut().filter(|part| part.name == "scalp") {
+        part.color = part.color.lerp(hair, HIDDEN);
+    }
+}
+
 /// Adds an eyeball: a closed ball with its pole at the front, so that iris and pupil are round. `side`: 1 is
 /// left, −1 right.
 fn add_eye(mesh: &mut Mesh, side: f32) {

@@ -54,18 +54,21 @@ impl Default for BuiltinOptions {
 
 /// Builds the scene. The result is bitwise identical for the same options and any number of threads.
 pub fn scene(options: &BuiltinOptions) -> Scene {
-    let (body, collision) = rayon::join(bust::drawn, bust::collision);
+    let (mut body, collision) = rayon::join(bust::drawn, bust::collision);
     let (strands, points) = (options.strands as usize, options.points.max(3) as usize);
     let mut scene = settings(options);
     scene.grooms[0].groom = groom::groom(&body.mesh, &options.style.cut(), strands, points, options.seed);
     scene.grooms[1].groom = brows::groom(options.seed);
+    if options.strands > 0 {
+        bust::shade_scalp(&mut body.mesh, scene.grooms[0].look.root_color);
+    }
     scene.clip = Some(motion::clip(&body));
     (scene.body, scene.collision) = (Some(body), Some(collision));
     scene
 }
 
-/// Returns the scene without its geometry, which is immediate: its two grooms (hair, and brows with lashes)
-/// have no strands, and there is no body.
+/// Returns the scene without its geometry, which is immediate: its two grooms (hair; brows, lashes and the fine
+/// hair of the hairline) have no strands, and there is no body.
 pub fn settings(options: &BuiltinOptions) -> Scene {
     let hair = SceneGroom {
         name: "Head hair".into(),
@@ -78,9 +81,10 @@ pub fn settings(options: &BuiltinOptions) -> Scene {
         name: "Brows and lashes".into(),
         materials: vec![Material::default()],
         guides: Guides::All,
+        // Brows are darker than the hair of the head.
         look: HairLook {
-            root_color: vec3(0.02, 0.012, 0.008),
-            tip_color: vec3(0.03, 0.018, 0.012),
+            root_color: hair.look.root_color * 0.45,
+            tip_color: hair.look.root_color * 0.65,
             ..HairLook::default()
         },
         ..SceneGroom::default()

@@ -21,6 +21,8 @@ pub const EYE_RADIUS: f32 = 0.0142;
 
 /// Height at which the bust is cut off flat [m].
 pub const BASE: f32 = -0.30;
+/// Rounding of the edge there [mm].
+const EDGE: f32 = 34.0;
 
 /// Height at which the head alone is cut off flat [m].
 pub const NECK: f32 = -0.155;
@@ -52,11 +54,11 @@ fn bust(p: Vec3, ear: impl Fn(Vec3, f32) -> f32) -> f32 {
     let body = torso(q);
     // Far below the head, its details have no effect.
     if q.y < -265.0 {
-        return both(body, BASE * MM - q.y, 6.0) / MM;
+        return both(body, BASE * MM - q.y, EDGE) / MM;
     }
     let head = ear(q, head(q));
     let d = union(union(body, neck(q), 36.0), head, 14.0);
-    both(d, BASE * MM - q.y, 6.0) / MM
+    both(d, BASE * MM - q.y, EDGE) / MM
 }
 
 /// Mirrors `p` [m] to the left side and converts it to millimeters. Rounded over 4 mm, so that the halves
@@ -84,12 +86,14 @@ fn head(q: Vec3) -> f32 {
 fn face(q: Vec3, d: f32) -> f32 {
     // The face from brow to jaw, the jawline and the chin.
     let mut f = ellipsoid(q, vec3(0.0, -22.0, 17.0), vec3(60.0, 86.0, 64.5));
-    f = union(f, limb(q, vec3(44.0, -50.0, 0.0), 15.0, vec3(13.0, -97.0, 57.0), 13.0), 30.0);
-    f = union(f, ellipsoid(q, vec3(0.0, -101.0, 64.0), vec3(16.0, 13.5, 16.5)), 26.0);
+    f = union(f, limb(q, vec3(43.0, -51.0, 0.0), 14.0, vec3(9.0, -96.0, 59.0), 12.5), 30.0);
+    f = union(f, ellipsoid(q, vec3(0.0, -101.0, 64.0), vec3(14.5, 13.5, 16.0)), 26.0);
     let mut d = union(d, f, 22.0);
     // Cheekbones, the rounding under the lips, a soft brow.
     d = union(d, ellipsoid(q, vec3(38.0, -21.0, 47.0), vec3(21.0, 16.0, 21.0)), 30.0);
     d = union(d, ellipsoid(q, vec3(0.0, -68.0, 58.0), vec3(30.0, 25.0, 28.0)), 18.0);
+    // The cheek between cheekbone and jaw.
+    d = union(d, ellipsoid(q, vec3(33.0, -57.0, 40.0), vec3(22.0, 27.0, 21.0)), 26.0);
     d = union(d, limb(q, vec3(4.0, 20.0, 73.0), 8.5, vec3(46.0, 20.0, 53.0), 8.0), 26.0);
     d = eyes(q, d);
     d = nose(q, d);
@@ -135,7 +139,7 @@ fn nose(q: Vec3, d: f32) -> f32 {
     n = union(n, sphere(q, vec3(0.0, -36.5, 95.5), 7.6), 8.0);
     n = union(n, ellipsoid(q, vec3(9.5, -40.5, 85.5), vec3(6.0, 5.6, 8.5)), 7.0);
     let d = union(d, n, 12.0);
-    cut(d, ellipsoid(q, vec3(5.6, -47.5, 92.0), vec3(3.0, 4.0, 4.6)), 3.0)
+    cut(d, ellipsoid(q, vec3(5.2, -47.8, 91.5), vec3(2.3, 3.2, 3.8)), 3.0)
 }
 
 /// Adds the lips and separates them.
@@ -226,16 +230,23 @@ pub fn clothes(p: Vec3) -> f32 {
 /// Positive where hair grows, and 0 on the hairline; not an exact distance [m].
 pub fn scalp(p: Vec3) -> f32 {
     let q = vec3(p.x.abs(), p.y, p.z) * MM;
-    // Height of the hairline by the angle around the head, 0 at the front and π at the nape.
-    let angle = q.x.atan2(q.z + 15.0);
-    let line = HAIRLINE.windows(2).find(|w| angle <= w[1].0).map_or(HAIRLINE[HAIRLINE.len() - 1].1, |w| {
-        let t = ((angle - w[0].0) / (w[1].0 - w[0].0)).clamp(0.0, 1.0);
-        w[0].1 + (w[1].1 - w[0].1) * smoothstep(0.0, 1.0, t)
-    });
+    let line = hairline(q.x.atan2(q.z - HAIRLINE_CENTER * MM)) * MM;
     // Excludes the ear.
     let ear =
         turned_ellipsoid(q, vec3(77.0, -8.0, -15.0), vec3(13.0, 36.0, 20.0), Quat::from_rotation_x(0.15));
     (q.y - line).min(ear) / MM
+}
+
+/// Place on the Z axis from which the angles of the hairline are measured [m].
+pub const HAIRLINE_CENTER: f32 = -0.015;
+
+/// Returns the height of the hairline [m] at an angle around the head [rad], 0 at the front and π at the nape.
+pub fn hairline(angle: f32) -> f32 {
+    let height = HAIRLINE.windows(2).find(|w| angle <= w[1].0).map_or(HAIRLINE[HAIRLINE.len() - 1].1, |w| {
+        let t = ((angle - w[0].0) / (w[1].0 - w[0].0)).clamp(0.0, 1.0);
+        w[0].1 + (w[1].1 - w[0].1) * smoothstep(0.0, 1.0, t)
+    });
+    height / MM
 }
 
 /// The hairline: (angle around the head [rad], height [mm]) from the middle of the forehead to the nape.

@@ -31,10 +31,9 @@ impl BodyPose {
     pub(super) fn new(scene: &Scene) -> Self {
         let rest = scene.body.as_ref().map(|b| b.world(&b.rest_pose())).unwrap_or_default();
         let anchor = scene.body.as_ref().map_or(0, |b| anchor_joint(b, scene));
-        let world = scene.body.as_ref().map(|b| first_pose(b, anchor, scene)).unwrap_or_default();
         let mut pose = Self {
-            apart: world != rest,
-            world,
+            apart: false,
+            world: Vec::new(),
             rest,
             moved: RigidTransform::default(),
             anchor,
@@ -42,6 +41,8 @@ impl BodyPose {
             positions: Vec::new(),
             normals: Vec::new(),
         };
+        pose.world = pose.first_world(scene);
+        pose.apart = pose.world != pose.rest;
         if let Some(body) = &scene.body {
             body.skinned(&pose.world, &mut pose.positions, &mut pose.normals);
         }
@@ -87,6 +88,11 @@ impl BodyPose {
         let world = body.world(&self.cuts.sample(clip, time));
         let anchor = RigidTransform::from_affine(&world[self.anchor]);
         Some((world, anchor))
+    }
+
+    /// Returns the joints in the pose in which hair is built on the body; empty without a body.
+    pub(super) fn first_world(&self, scene: &Scene) -> Vec<Affine3A> {
+        scene.body.as_ref().map(|body| first_pose(body, self.anchor, scene)).unwrap_or_default()
     }
 
     /// Returns the rigid motion of each joint that has a cut between two times [s].

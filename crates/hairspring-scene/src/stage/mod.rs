@@ -16,6 +16,7 @@ mod reach;
 mod rigid_parts;
 mod starts_inside;
 mod state;
+mod subject_bounds;
 mod surface;
 mod thickness;
 mod update_settings;
@@ -168,6 +169,8 @@ pub struct Stage {
     roots: Vec<RigidTransform>,
     hands: StagedHands,
     clock: Clock,
+    /// See [`Stage::cut`].
+    cut: bool,
 }
 
 impl Stage {
@@ -192,8 +195,17 @@ impl Stage {
         let simulation =
             join_grooms::simulation(&hair, &scene, scene.solver, body.pose().anchor(), &body.poses());
         let (wind, hands) = (StagedWind::new(joints.wind), StagedHands::new(joints.hands));
-        let mut stage =
-            Self { body, wind, hair, simulation, roots: Vec::new(), hands, clock: Clock::ZERO, scene };
+        let mut stage = Self {
+            body,
+            wind,
+            hair,
+            simulation,
+            roots: Vec::new(),
+            hands,
+            clock: Clock::ZERO,
+            cut: false,
+            scene,
+        };
         stage.reset();
         Ok(stage)
     }
@@ -203,6 +215,7 @@ impl Stage {
     pub fn reset(&mut self) {
         self.clock = Clock::ZERO;
         self.body.pose_mut().move_to(RigidTransform::default());
+        self.cut = false;
         self.body.place(&self.scene, 0.0);
         self.hands.reset();
         self.simulation.remove_all_manipulators();
@@ -324,7 +337,9 @@ impl Stage {
         self.hands.begin(&self.scene.hands, from, &self.body, &mut self.simulation);
         // Sources are at their poses at the start of the frame, as points are.
         self.wind.advance(&self.scene, from.midpoint(to), &self.body);
-        if let Some(cut) = self.body.advance(&self.scene, (from, to)) {
+        let cut = self.body.advance(&self.scene, (from, to));
+        self.cut = cut.is_some();
+        if let Some(cut) = cut {
             self.simulation.teleport(cut);
         }
         self.hands.advance(&self.scene.hands, to, &self.body, &mut self.simulation);
@@ -356,6 +371,11 @@ impl Stage {
     /// Returns the time since the start of the scene [s].
     pub fn time(&self) -> f64 {
         self.clock.time()
+    }
+
+    /// Returns whether the body and its hair were placed elsewhere in the last step instead of moving there.
+    pub fn cut(&self) -> bool {
+        self.cut
     }
 
     /// Returns the scene's settings, without its grooms, which have moved into the stage.

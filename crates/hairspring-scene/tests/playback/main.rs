@@ -14,5 +14,6 @@ mod props_and_limbs_collide_with_hair;
 mod scenes_made_by_code_are_checked_like_files;
 mod settings_change_during_playback;
 mod stages_return_to_a_state;
+mod subject_bounds_hold_the_motion;
 mod support;
 mod time_counts_frames;

@@ -139,12 +139,20 @@ impl Bodies {
         }
     }
 
-    /// Linear RGB of the bodies in a pixel of the last drawn tile. Each surface in the pixel is lit once and
+    /// The mean of a value over the bodies in a pixel of the last drawn tile. `value` is called once for each
+    /// surface in the pixel, with the body's index, the body, the triangle and the pixel's position, and
     /// weighted by its number of samples.
-    pub fn light(&self, lit: &Lit, corner: [usize; 2], samples: &Samples, pixel: usize) -> Vec3 {
+    pub fn average(
+        &self,
+        lit: &Lit,
+        corner: [usize; 2],
+        samples: &Samples,
+        pixel: usize,
+        value: impl Fn(usize, &MeshDraw, usize, Vec2) -> Vec3,
+    ) -> Vec3 {
         let at = Vec2::new((corner[0] + pixel % SIDE) as f32 + 0.5, (corner[1] + pixel / SIDE) as f32 + 0.5);
         let mut left = samples.triangle[pixel];
-        let (mut color, mut covered) = (Vec3::ZERO, 0.0);
+        let (mut sum, mut covered) = (Vec3::ZERO, 0.0);
         for s in 0..left.len() {
             let number = left[s];
             if number == NONE {
@@ -160,9 +168,9 @@ impl Bodies {
                 }
             }
             covered += weight;
-            color += weight * skin::light(lit, body, t, at);
+            sum += weight * value(b, body, t, at);
         }
-        color / f32::max(covered, 1.0)
+        sum / f32::max(covered, 1.0)
     }
 }
 

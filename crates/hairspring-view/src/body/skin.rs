@@ -1,7 +1,7 @@
 //! The color of a body's surface under the three lamps and the sky.
 
 use super::Lit;
-use crate::frame::MeshDraw;
+use crate::{camera::View, frame::MeshDraw};
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
@@ -29,12 +29,12 @@ pub(crate) const LOBES: (f32, f32) = (0.75, 0.6);
 pub(crate) const SHEEN: f32 = 0.25;
 
 /// Light leaving triangle `t` of `body` toward the camera, at the pixel position `at`.
-pub(super) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
+pub(crate) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
     let Lit { frame, view, shadow, level } = *lit;
     let [ia, ib, ic] = body.triangles[t].map(|i| i as usize);
     let [a, b, c] = [ia, ib, ic].map(|i| body.positions[i]);
     let ray = view.ray(at.x, at.y);
-    let (p, weight) = meet(view.eye, ray, a, b, c);
+    let (p, weight) = meet(view, [a, b, c], at);
     let flat = (b - a).cross(c - a).normalize_or(Vec3::Y);
     let smooth = match body.smooth() {
         true => body.normals[ia] * weight.x + body.normals[ib] * weight.y + body.normals[ic] * weight.z,
@@ -97,13 +97,14 @@ fn specular(n: Vec3, v: Vec3, l: Vec3, roughness: f32, nv: f32) -> f32 {
     fresnel * (LOBES.0 * lobe(roughness) + (1.0 - LOBES.0) * lobe(LOBES.1 * roughness)).min(4.0 * PI)
 }
 
-/// Intersection of the ray with the triangle's plane, and the corners' weights there, clamped to the
-/// triangle.
-fn meet(eye: Vec3, ray: Vec3, a: Vec3, b: Vec3, c: Vec3) -> (Vec3, Vec3) {
+/// Intersection of the ray through the pixel position `at` with the triangle's plane, and the corners' weights
+/// there, clamped to the triangle.
+pub(crate) fn meet(view: &View, [a, b, c]: [Vec3; 3], at: Vec2) -> (Vec3, Vec3) {
+    let ray = view.ray(at.x, at.y);
     let (e1, e2) = (b - a, c - a);
     let q = ray.cross(e2);
     let det = e1.dot(q);
-    let s = eye - a;
+    let s = view.eye - a;
     let u = s.dot(q) / det;
     let v = ray.dot(s.cross(e1)) / det;
     let weight = Vec3::new(1.0 - u - v, u, v);

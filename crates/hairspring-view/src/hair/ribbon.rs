@@ -2,6 +2,7 @@
 //! smoothing are deferred until a tile needs them.
 
 use super::{
+    blend::CLOSED,
     order::{Order, Run},
     project::{Points, Projection, Track},
     segment::Dot,
@@ -16,7 +17,7 @@ use crate::{
     tile::{PATCH, PATCHES, SIDE, Tiles},
 };
 use fearless_simd::{dispatch, f32x8, i32x8, mask32x8, prelude::*};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Data that every run and every tile of a frame needs.
 pub(crate) struct Setup<'a> {
@@ -40,6 +41,19 @@ impl Setup<'_> {
     /// The height below which the ground hides everything [m]; −∞ if no ground is visible.
     pub fn low(&self) -> f32 {
         self.floor.map_or(f32::NEG_INFINITY, |floor| floor.height)
+    }
+
+    /// What is behind hair and bodies in the pixel at column and row `at`, where `wall` is the backdrop: the
+    /// ground, if there is one. Opaque pixels need none; `through` is the pixel's transmittance.
+    #[inline(always)]
+    pub fn behind(&self, wall: Vec3, at: [usize; 2], through: f32) -> Vec3 {
+        match self.floor.filter(|_| through > CLOSED) {
+            Some(floor) => {
+                let at = Vec2::new(at[0] as f32 + 0.5, at[1] as f32 + 0.5);
+                floor.over(wall, &self.view, at, self.shadow, self.level)
+            }
+            None => wall,
+        }
     }
 }
 

@@ -66,7 +66,7 @@ impl Fiber {
         Self {
             tilt: (look.cuticle.clamp(0.0, 10.0) + TILTS * random).to_radians(),
             // Karis 2016, slide 18: β, β/2 and 2β.
-            spread: [rough, 0.5 * rough, 2.0 * rough].map(|b| b + 0.02),
+            spread: [rough, 0.5 * rough, 2.0 * rough].map(|b| (b + 0.02).hypot(SOFTBOX)),
             specular: look.specular.max(0.0),
             backlight: look.backlight.max(0.0),
             scatter: look.scatter.max(0.0),
@@ -76,6 +76,10 @@ impl Fiber {
 
 // Constants of the model. The shaders of the `gpu` module use the same values.
 
+/// Size of the lamps [rad]: the standard deviation of the directions of their light, as of a softbox of 1 m at
+/// 2 m. It widens every lobe. With lamps that are points, fanned-out hair would be overexposed, because no
+/// other strand blocks the light.
+const SOFTBOX: f32 = 0.14;
 /// Variation of the cuticle tilt between strands [degrees].
 pub(crate) const TILTS: f32 = 1.2;
 /// Variation of the pigment from strand to strand, at a look's variation of 1.
@@ -326,6 +330,31 @@ mod tests {
             dispatch!(level, simd => exp2(f32x8::splat(simd, x)).store_slice(&mut got));
             assert!((got[0] / x.exp2() - 1.0).abs() < 2e-4, "{x}: {} {}", got[0], x.exp2());
         }
+    }
+
+    /// Hair that fans out has no other hair between it and the lamps. Brown hair keeps its color there, in all but
+    /// a few directions.
+    #[test]
+    fn hair_that_fans_out_is_not_overexposed() {
+        let shader = Shader::new(&Lighting::default(), Vec3::new(0.0, 0.0, 1.5));
+        let look = HairLook::from(hairspring_scene::HairColor::Brown);
+        let fiber = Fiber::new(&look, 0.0);
+        let (mut white, mut all) = (0, 0);
+        for k in 0..2000 {
+            // Directions on a Fibonacci sphere.
+            let y = 1.0 - (k as f32 + 0.5) / 1000.0;
+            let (sin, cos) = (k as f32 * 2.399_963).sin_cos();
+            let across = (1.0 - y * y).sqrt();
+            let mut block =
+                Block { t: [[across * cos; LANES], [y; LANES], [across * sin; LANES]], ..Block::default() };
+            block.pigment = pigment(look.tip_color).to_array().map(|c| [c; LANES]);
+            block.light = [[0.0; LANES], [0.0; LANES], [0.0; LANES], [1.0; LANES]];
+            block.body = [1.0; LANES];
+            dispatch!(Level::new(), simd => shader.shade(simd, &fiber, &mut block));
+            white += usize::from(filmic(color::open(block.color[0])).min_element() > 0.8);
+            all += 1;
+        }
+        assert!(white * 50 < all, "{white} of {all} directions are white");
     }
 
     /// Where neither lamps nor sky reach, hair is dark, and at least as saturated as in the open. It is not a

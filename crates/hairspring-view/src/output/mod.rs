@@ -2,11 +2,13 @@
 //! renamed when it is complete.
 
 mod clip;
+mod exr;
 mod jpeg;
 mod png;
 mod yuv;
 
 pub use clip::ClipWriter;
+pub use exr::{Layers, write_exr};
 pub use jpeg::write_jpeg;
 pub use png::{encode_png, read_png, sequence_path, write_png};
 
@@ -33,7 +35,7 @@ pub enum OutputError {
         why: String,
     },
     /// A file that was read is not a valid picture.
-    #[error("{path}: not a picture that can be read ({why}); an 8-bit RGB PNG was expected", path = path.display())]
+    #[error("{path}: not a picture that can be read ({why}); an 8-bit RGB or RGBA PNG was expected", path = path.display())]
     Picture {
         /// The path of the file.
         path: PathBuf,

@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Writes an 8-bit sRGB PNG. The file appears only when it is complete.
+/// Writes an 8-bit sRGB PNG, with alpha if the picture has it. The file appears only when it is complete.
 ///
 /// # Errors
 /// Returns an error if the folder is missing or not writable, or if the disk is full.
@@ -27,12 +27,19 @@ pub fn write_png(path: &Path, image: &Image) -> Result<(), OutputError> {
 /// Returns the error of `out`, or an error if the width or height is 0.
 pub fn encode_png(out: impl Write, image: &Image) -> std::io::Result<()> {
     let mut encoder = png::Encoder::new(out, image.width, image.height);
-    encoder.set_color(png::ColorType::Rgb);
+    let opaque = image.alpha.is_empty();
+    encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
     encoder.set_compression(png::Compression::Fast);
     let encoded = encoder.write_header().and_then(|mut writer| {
-        writer.write_image_data(&image.rgb)?;
+        if opaque {
+            writer.write_image_data(&image.rgb)?;
+        } else {
+            let pixels = image.rgb.chunks_exact(3).zip(&image.alpha);
+            let rgba: Vec<u8> = pixels.flat_map(|(rgb, a)| [rgb[0], rgb[1], rgb[2], *a]).collect();
+            writer.write_image_data(&rgba)?;
+        }
         writer.finish()
     });
     encoded.map_err(|e| match e {
@@ -41,7 +48,7 @@ pub fn encode_png(out: impl Write, image: &Image) -> std::io::Result<()> {
     })
 }
 
-/// Reads an 8-bit RGB PNG.
+/// Reads an 8-bit PNG with RGB or RGBA.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read, or is another kind of picture.
@@ -52,13 +59,20 @@ pub fn read_png(path: &Path) -> Result<Image, OutputError> {
     let mut reader =
         png::Decoder::new(std::io::BufReader::new(file)).read_info().map_err(|e| wrong(e.to_string()))?;
     let size = reader.output_buffer_size().ok_or_else(|| wrong("too large".into()))?;
-    let mut rgb = vec![0; size];
-    let info = reader.next_frame(&mut rgb).map_err(|e| wrong(e.to_string()))?;
-    if (info.color_type, info.bit_depth) != (png::ColorType::Rgb, png::BitDepth::Eight) {
+    let mut pixels = vec![0; size];
+    let info = reader.next_frame(&mut pixels).map_err(|e| wrong(e.to_string()))?;
+    let known = matches!(info.color_type, png::ColorType::Rgb | png::ColorType::Rgba);
+    if !known || info.bit_depth != png::BitDepth::Eight {
         return Err(wrong(format!("it is {:?} with {:?} bits", info.color_type, info.bit_depth)));
     }
+    let mut rgb = pixels;
     rgb.truncate(info.buffer_size());
-    Ok(Image { width: info.width, height: info.height, rgb })
+    let mut alpha = Vec::new();
+    if info.color_type == png::ColorType::Rgba {
+        alpha = rgb.chunks_exact(4).map(|p| p[3]).collect();
+        rgb = rgb.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect();
+    }
+    Ok(Image { width: info.width, height: info.height, rgb, alpha })
 }
 
 /// Returns the path of frame `number` of a sequence. The last run of `#` in the file name is replaced by the

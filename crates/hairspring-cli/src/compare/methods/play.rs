@@ -4,7 +4,7 @@ use super::BOUND;
 use crate::{
     console::Progress,
     fault::Fault,
-    picture::{Studio, View},
+    picture::{Setup, Studio, View},
 };
 use hairspring_scene::stage::Stage;
 use hairspring_view::encode_png;
@@ -43,8 +43,8 @@ pub struct Shot {
 
 /// Plays `frames` frames of 1/60 s; takes pictures if `draw` is set.
 pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) -> Result<Played, Fault> {
-    let view = View { size: SIZE, camera: None, target: None, fov: None, hair_width: None, gpu: false };
-    let mut studio = if draw { Some(Studio::new(&view, &mut stage)?) } else { None };
+    let view = View { size: SIZE, ..View::default() };
+    let mut studio = if draw { Some(Studio::new(&view, &mut stage, Setup::PLAIN)?) } else { None };
     let mut times = Vec::with_capacity(frames as usize);
     let (mut reset_strands, mut sum, mut worst) = (0, 0.0, 0.0f64);
     let mut stretch = Vec::with_capacity(frames as usize);
@@ -68,9 +68,13 @@ pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) 
         stretch.push([time, most]);
         // Frames n/4, 2n/4, … n.
         let moments = |f: u32| u64::from(f) * u64::from(MOMENTS) / u64::from(frames);
-        if let Some(studio) = studio.as_mut().filter(|_| moments(frame) > moments(frame - 1)) {
+        let due = moments(frame) > moments(frame - 1);
+        if let Some(studio) = studio.as_mut().filter(|_| !due) {
+            studio.pass(&stage);
+        }
+        if let Some(studio) = studio.as_mut().filter(|_| due) {
             let mut png = Vec::new();
-            encode_png(&mut png, studio.draw(&stage)?.0)
+            encode_png(&mut png, &studio.draw(&stage)?.0.image())
                 .map_err(|e| Fault::Unwritable(format!("a picture could not be encoded: {e}")))?;
             shots.push(Shot { time, png, reset_strands: report.step.reset_strands });
         }

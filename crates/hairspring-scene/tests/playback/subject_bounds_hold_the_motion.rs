@@ -1,0 +1,97 @@
+//! Promise: the camera that is set automatically keeps hair and head in view. The box that it shows holds
+//! all strands in every frame of the motion, holds the face, and does not depend on the current time.
+
+use glam::{Quat, Vec3};
+use hairspring::{
+    body::{Body, Clip, Mesh, Trs},
+    groom::Groom,
+    settings::Wind,
+};
+use hairspring_scene::{
+    Guides, Scene, SceneGroom,
+    builtin::{BuiltinOptions, Style, scene},
+    stage::Stage,
+};
+
+/// The fraction of points outside the box, over all frames.
+fn outside(stage: &mut Stage, frames: usize) -> f64 {
+    let (low, high) = stage.subject_bounds().unwrap();
+    let (mut out, mut all) = (0, 0);
+    for _ in 0..frames {
+        for p in stage.strands().flat_map(|s| s.points) {
+            out += usize::from(p.cmplt(low).any() || p.cmpgt(high).any());
+            all += 1;
+        }
+        stage.step(1.0 / 30.0);
+    }
+    out as f64 / all as f64
+}
+
+#[test]
+fn the_box_holds_hair_that_turns_and_shakes() {
+    for style in Style::ALL {
+        let options = BuiltinOptions { strands: 600, guides: Guides::All, ..BuiltinOptions::new(style) };
+        let mut stage = Stage::new(scene(&options)).unwrap();
+        let share = outside(&mut stage, 150);
+        assert!(share < 2e-3, "{}: {share} of all points are outside", style.name());
+    }
+}
+
+#[test]
+fn the_box_holds_the_head_and_not_the_whole_bust() {
+    let options = BuiltinOptions { strands: 100, ..BuiltinOptions::new(Style::ShortFur) };
+    let stage = Stage::new(scene(&options)).unwrap();
+    let (low, high) = stage.subject_bounds().unwrap();
+    let (nose, chin) = (Vec3::new(0.0, -0.036, 0.1), Vec3::new(0.0, -0.11, 0.07));
+    for p in [nose, chin] {
+        assert!(p.cmpge(low).all() && p.cmple(high).all(), "{p} of {low} to {high}");
+    }
+    assert!(low.y > -0.28, "the chest is not part of the subject: {low}");
+}
+
+/// A tuft on a board that travels 3 m.
+fn traveler() -> Scene {
+    let corners = [(-0.1, -0.1), (0.1, -0.1), (0.1, 0.1), (-0.1, 0.1)].map(|(x, z)| Vec3::new(x, 0.0, z));
+    let mesh = Mesh {
+        positions: corners.to_vec(),
+        normals: vec![Vec3::Y; 4],
+        triangles: vec![[0, 2, 1], [0, 3, 2]],
+        ..Mesh::default()
+    };
+    let at =
+        |k: usize| Trs { translation: Vec3::X * k as f32 * 0.05, rotation: Quat::IDENTITY, ..Trs::default() };
+    let clip =
+        Clip { name: "travel".into(), rate: 30.0, joint_count: 1, samples: (0..=60).map(at).collect() };
+    let strand: Vec<Vec3> = (0..8).map(|k| Vec3::Y * (0.001 + 0.02 * k as f32)).collect();
+    let groom = SceneGroom { groom: Groom::from_strands(&[strand], 35e-6), ..SceneGroom::default() };
+    Scene {
+        grooms: vec![groom],
+        body: Some(Body::rigid(mesh)),
+        clip: Some(clip),
+        gravity: Vec3::Y * -9.81,
+        ..Scene::default()
+    }
+}
+
+#[test]
+fn the_box_holds_the_whole_way_at_any_time() {
+    let mut stage = Stage::new(traveler()).unwrap();
+    let first = stage.subject_bounds();
+    let (low, high) = first.unwrap();
+    assert!(low.x < 0.0 && high.x > 3.0, "{low} to {high}");
+    assert_eq!(outside(&mut stage, 61), 0.0);
+    assert_eq!(stage.subject_bounds(), first);
+}
+
+#[test]
+fn the_box_holds_hair_that_is_blown_and_hair_that_falls() {
+    let still = Scene { clip: None, ..traveler() };
+    let box_of = |scene: Scene| Stage::new(scene).unwrap().subject_bounds().unwrap();
+    let (_, calm) = box_of(still.clone());
+    let wind = Wind { velocity: Vec3::X * 8.0, ..Wind::default() };
+    let (_, windy) = box_of(Scene { wind, ..still.clone() });
+    assert!(windy.x > calm.x + 0.1, "{windy} and {calm}");
+    let mut falling = still;
+    falling.solver.sag_free = false;
+    assert!(box_of(falling).0.y < -0.13);
+}
