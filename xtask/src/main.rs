@@ -5,12 +5,14 @@ mod fuzz;
 mod layers;
 mod pictures;
 mod promises;
+mod python;
 mod run;
 mod test;
 
 const HELP: &str = "cargo xtask NAME
 
   test           all tests, in release; closes on one line with the sum
+  python         the tests of the Python package only: it is installed in target/python
   lint           layers, promises, formatting, clippy with warnings refused (the library also without its features), the docs, and where all dependencies come from and under which licence
   layers         modules of the library import each other in one direction only
   promises       every promise names a test that exists, and every test of a promise is named
@@ -32,6 +34,10 @@ fn main() {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     let done = match words[..] {
         ["test"] => test::all(),
+        ["python"] => python::test().and_then(|[_, failed, _]| match failed {
+            0 => Ok(()),
+            _ => Err(format!("{failed} tests failed")),
+        }),
         ["lint"] => lint(),
         ["layers"] => layers::check(),
         ["promises"] => promises::check(),
@@ -108,7 +114,7 @@ fn monkey(minutes: &str) -> Result<(), String> {
 fn package() -> Result<(), String> {
     // Private: the developer commands, the helpers of the tests, the scalar build of the library's files, and the
     // program that may link it.
-    let private = ["xtask", "hairspring-test", "hairspring-scalar", "hairspring-one-lane", "hairspring-cli"];
+    let private = ["xtask", "hairspring-test", "hairspring-scalar", "hairspring-one-lane", "hairspring-cli", "hairspring-python"];
     let exclude = private.iter().flat_map(|name| ["--exclude", name]);
     let package = ["package", "--quiet", "--workspace", "--no-verify", "--allow-dirty"];
     run::cargo(&package.into_iter().chain(exclude).collect::<Vec<_>>(), &[])

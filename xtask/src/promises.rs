@@ -62,7 +62,7 @@ fn has_test(path: &Path) -> Result<bool, String> {
     let files = if path.is_dir() { rust_files(path)? } else { vec![path.to_owned()] };
     for file in files {
         let text = read(&file)?;
-        if ["#[test]", "proptest! {", "fuzz_target!"].iter().any(|mark| text.contains(mark)) {
+        if ["#[test]", "proptest! {", "fuzz_target!", "\ndef test_"].iter().any(|mark| text.contains(mark)) {
             return Ok(true);
         }
     }

@@ -1,6 +1,6 @@
-//! Runs all tests, and prints one line with the totals at the end.
+//! Runs all tests, those of the Python package included, and prints one line with the totals at the end.
 
-use crate::run;
+use crate::{python, run};
 use std::{
     io::{BufRead, BufReader},
     process::Stdio,
@@ -28,12 +28,19 @@ pub fn all() -> Result<(), String> {
         add(&mut sum, &line);
     }
     let status = child.wait().map_err(|e| e.to_string())?;
+    // After the library and the program are built, which the package shares.
+    let in_python = python::test();
+    if let Ok(more) = &in_python {
+        sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+    }
     let [passed, failed, skipped] = sum;
     println!("{passed} passed, {failed} failed, {skipped} skipped");
-    match (status.success(), passed) {
-        (true, 1..) => Ok(()),
-        (true, 0) => Err("no test ran".into()),
-        (false, _) => Err(format!("cargo test ended with {status}")),
+    in_python?;
+    match (status.success(), passed, failed) {
+        (true, 1.., 0) => Ok(()),
+        (true, 0, _) => Err("no test ran".into()),
+        (true, ..) => Err("a test of the Python package failed".into()),
+        (false, ..) => Err(format!("cargo test ended with {status}")),
     }
 }
 

@@ -67,7 +67,7 @@ mod view;
 
 pub use app::{App, Options};
 pub use differ::{Difference, captions_of, scene_differences};
-pub use document::{Document, set_in_text};
+pub use document::{Document, set_in_text, text_in_folder};
 pub use drag_limiter::Push;
 pub use error::AppError;
 pub use painter::Drawn;

@@ -1,7 +1,7 @@
 //! The command line. Each command's options are in the module of the command.
 
 use crate::{bake, bench, compare, convert, demo, info, live, render, validate};
-use clap::{Parser, Subcommand};
+use clap::{Parser, Subcommand, ValueEnum};
 
 const AFTER_HELP: &str = "\
 Examples:
@@ -56,9 +56,24 @@ pub struct Cli {
     #[arg(short, long, global = true, help_heading = EVERYWHERE)]
     pub verbose: bool,
 
+    /// How the progress of a long run is shown
+    #[arg(long, global = true, help_heading = EVERYWHERE, value_name = "FORM", default_value = "text")]
+    pub progress: ProgressForm,
+
     /// The command to run.
     #[command(subcommand)]
     pub command: Option<Command>,
+}
+
+/// How the progress of a long run is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum ProgressForm {
+    /// A bar on a terminal, otherwise a line every tenth.
+    Text,
+    /// One line of JSON on standard error for each frame and each note.
+    Json,
+    /// Lines of Open Job Description on standard output: `openjd_progress` and `openjd_status`.
+    Openjd,
 }
 
 /// The commands. Each is documented at its options.

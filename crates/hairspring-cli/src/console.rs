@@ -1,7 +1,8 @@
 //! Messages to the user: results on standard output, everything else on standard error.
 
-use crate::fault::Fault;
+use crate::{args::ProgressForm, fault::Fault};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::json;
 use std::{
     fmt::Display,
     io::{self, IsTerminal, Write, stderr, stdout},
@@ -13,6 +14,7 @@ use std::{
 pub struct Console {
     quiet: bool,
     verbose: bool,
+    form: ProgressForm,
 }
 
 /// The first error of standard output.
@@ -47,6 +49,11 @@ pub fn note(line: impl Display) {
     let _ = writeln!(stderr(), "note: {line}");
 }
 
+/// Prints an event of `--progress json`.
+fn event(event: &serde_json::Value) {
+    let _ = writeln!(stderr(), "{event}");
+}
+
 /// Prints a line about an error.
 pub fn complain(line: &impl Display) {
     let _ = writeln!(stderr(), "error: {line}");
@@ -54,14 +61,16 @@ pub fn complain(line: &impl Display) {
 
 impl Console {
     /// `quiet`: only results and errors; `verbose`: also the time of each frame.
-    pub fn new(quiet: bool, verbose: bool) -> Self {
-        Self { quiet, verbose }
+    pub fn new(quiet: bool, verbose: bool, form: ProgressForm) -> Self {
+        Self { quiet, verbose, form }
     }
 
     /// Prints a note that the user should know about.
     pub fn note(self, line: impl Display) {
-        if !self.quiet {
-            note(line);
+        match self.form {
+            _ if self.quiet => {}
+            ProgressForm::Json => event(&json!({ "event": "note", "text": line.to_string() })),
+            _ => note(line),
         }
     }
 
@@ -84,7 +93,7 @@ impl Console {
 
     /// Like [`Console::progress`], in units other than frames.
     pub fn progress_in(self, what: &'static str, total: u32, unit: &'static str) -> Progress {
-        let bar = (!self.quiet && stderr().is_terminal()).then(|| {
+        let bar = (!self.quiet && self.form == ProgressForm::Text && stderr().is_terminal()).then(|| {
             let bar = ProgressBar::with_draw_target(Some(total.into()), ProgressDrawTarget::stderr());
             // The template has no user input, so it always parses. If it did not, the plain bar would be
             // shown.
@@ -112,11 +121,20 @@ pub struct Progress {
 
 impl Progress {
     /// Counts one finished step; `detail` is printed in verbose mode.
-    pub fn step(&mut self, detail: impl FnOnce() -> String) {
+    pub fn step(&mut self, detail: impl Fn() -> String) {
         self.done += 1;
-        match &self.bar {
-            Some(bar) => bar.inc(1),
-            None => {
+        let Self { what, done, total, unit, .. } = *self;
+        match (&self.bar, self.console.form) {
+            (_, ProgressForm::Json) => event(&json!({
+                "event": "progress", "what": what, "done": done, "total": total, "unit": unit, "detail": detail(),
+            })),
+            (_, ProgressForm::Openjd) => {
+                // The result is on standard output too; a closed pipe is reported at the end.
+                say(format_args!("openjd_progress: {:.2}", 100.0 * f64::from(done) / f64::from(total.max(1))));
+                say(format_args!("openjd_status: {what}, {done} of {total} {unit}"));
+            }
+            (Some(bar), _) => bar.inc(1),
+            (None, _) => {
                 let tenth = |n: u32| u64::from(n) * 10 / u64::from(self.total.max(1));
                 if !self.console.verbose && tenth(self.done) > tenth(self.done - 1) {
                     self.console
@@ -124,7 +142,7 @@ impl Progress {
                 }
             }
         }
-        if self.console.verbose {
+        if self.console.verbose && self.console.form == ProgressForm::Text {
             let line = detail();
             match &self.bar {
                 Some(bar) => bar.suspend(|| self.console.doing(line)),

@@ -1,6 +1,5 @@
 //! Parses frame numbers, sizes and guides from the command line.
 
-use hairspring::body::Clip;
 use hairspring_scene::{Background, Guides, stage::FrameRate};
 use std::str::FromStr;
 
@@ -17,9 +16,10 @@ pub struct FrameRange {
 const MOST: u32 = 1_000_000;
 
 impl FrameRange {
-    /// The frames of a motion at the rate `fps`, including its last moment; five seconds without a motion.
-    pub fn whole(clip: Option<&Clip>, fps: FrameRate) -> Self {
-        let last = fps.frames_of(clip.filter(|c| c.frame_count() > 1).map(Clip::duration));
+    /// The frames of a motion of this duration [s] at the rate `fps`, including its last moment; five seconds without a
+    /// motion.
+    pub fn whole(motion: Option<f64>, fps: FrameRate) -> Self {
+        let last = fps.frames_of(motion);
         Self { first: 1, last: last.min(MOST) }
     }
 
@@ -105,6 +105,12 @@ pub fn background(text: &str) -> Result<Background, String> {
     Background::ALL.into_iter().find(|b| b.name() == text).ok_or(format!("expected one of {names}"))
 }
 
+/// Parses a duration of 0 to 600 [s].
+pub fn duration(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|n| (0.0..=600.0).contains(n));
+    number.ok_or_else(|| "expected a number of seconds from 0 to 600".into())
+}
+
 /// Parses a number above 0.
 pub fn positive(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|n| n.is_finite() && *n > 0.0);
@@ -130,16 +136,9 @@ mod tests {
 
     #[test]
     fn a_motion_is_played_to_its_last_moment() {
-        let clip = |frames: usize, rate: f64| Clip {
-            name: String::new(),
-            rate,
-            joint_count: 1,
-            samples: vec![Default::default(); frames],
-        };
-        let whole = |clip: Option<&Clip>, fps: &str| FrameRange::whole(clip, rate(fps).unwrap()).last;
-        assert_eq!(whole(Some(&clip(301, 60.0)), "30"), 151);
-        assert_eq!(whole(Some(&clip(343, 120.0)), "30"), 86);
-        assert_eq!(whole(Some(&clip(1, 120.0)), "30"), 150);
+        let whole = |motion: Option<f64>, fps: &str| FrameRange::whole(motion, rate(fps).unwrap()).last;
+        assert_eq!(whole(Some(300.0 / 60.0), "30"), 151);
+        assert_eq!(whole(Some(342.0 / 120.0), "30"), 86);
         assert_eq!(whole(None, "24"), 120);
     }
 }

@@ -13,7 +13,7 @@ use hairspring::{
     groom::{Groom, Repairs},
 };
 use hairspring_io::{
-    Format, Motion, ReadOptions, SkinDistance, read_body, read_bones, read_groom, read_motion, read_scene,
+    Format, Motion, ReadOptions, SkinDistance, pc2, read_body, read_bones, read_groom, read_motion, read_scene,
 };
 use hairspring_scene::{Guides, Scene};
 use serde_json::{Value, json};
@@ -48,6 +48,25 @@ pub struct Options {
     json: bool,
 }
 
+/// The curves and the meshes of a USD or Alembic file.
+fn external(path: &Path, units: &ReadOptions, console: Console) -> Result<Value, Fault> {
+    let mut found = json!({});
+    let hair = read_groom(path, units).map(|loaded| {
+        tell(&loaded.notes, &loaded.repairs, console);
+        found["groom"] = groom(&loaded.value, &loaded.repairs);
+    });
+    let mesh = read_body(path, units).map(|loaded| {
+        tell(&loaded.notes, &loaded.repairs, console);
+        found["body"] = body(&loaded.value.body);
+    });
+    match (hair, mesh) {
+        (Err(why), Err(_)) => return Err(Fault::reading(why, path)),
+        (Err(why), _) | (_, Err(why)) => console.note(why),
+        _ => {}
+    }
+    Ok(found)
+}
+
 /// Runs the command.
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let path = &options.file;
@@ -55,7 +74,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let wrong = |e| Fault::reading(e, path);
     let format = Format::of(path).ok_or_else(|| {
         Fault::Usage(format!(
-            "{}: unknown extension; expected .hair, .tfx, .data, .glb, .gltf, .obj, .tfxmesh, .tfxbone, .bvh or .toml",
+            "{}: unknown extension; expected .hair, .tfx, .data, .glb, .gltf, .obj, .tfxmesh, .tfxbone, .bvh, .csv, .pc2, .usd, .abc or .toml",
             path.display()
         ))
     })?;
@@ -63,13 +82,24 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         return Err(Fault::Usage("--reverse applies to a groom file (.hair, .tfx, .data)".into()));
     }
     let mut found = match format {
-        Format::Hair | Format::Tfx | Format::Usc => {
+        Format::Hair | Format::Tfx | Format::Usc | Format::Csv => {
             let mut loaded = read_groom(path, &units).map_err(wrong)?;
             tell(&loaded.notes, &loaded.repairs, console);
             if options.units.reverse {
                 loaded.value.reverse();
             }
             groom(&loaded.value, &loaded.repairs)
+        }
+        Format::Usd | Format::Alembic => external(path, &units, console)?,
+        Format::Pc2 => {
+            let data = std::fs::read(path).map_err(|e| Fault::Unreadable(format!("{}: {e}", path.display())))?;
+            let cache = pc2::parse(&data).map_err(|p| wrong(p.in_file(path)))?;
+            json!({
+                "samples": cache.samples.len(),
+                "points": cache.samples.first().map_or(0, Vec::len),
+                "first_frame": cache.first_frame,
+                "frames_per_sample": cache.frames_per_sample,
+            })
         }
         Format::Gltf | Format::Obj | Format::TfxMesh => {
             let loaded = read_body(path, &units).map_err(wrong)?;

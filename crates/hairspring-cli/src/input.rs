@@ -4,7 +4,7 @@ use crate::{console::Console, fault::Fault, frames, manifest::Inputs};
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 use hairspring::groom::Repairs;
-use hairspring_io::{Axis, Format, ReadOptions, read_groom, read_scene};
+use hairspring_io::{Axis, Format, ReadOptions, read_body, read_groom, read_scene};
 use hairspring_scene::{Guides, Scene, SceneGroom};
 use std::path::{Path, PathBuf};
 
@@ -113,7 +113,11 @@ impl Input {
             if self.units.reverse {
                 loaded.value.reverse();
             }
-            alone(path, loaded.value)
+            let mut scene = alone(path, loaded.value);
+            if Format::of(path).is_some_and(|format| Format::EXTERNAL.contains(&format)) {
+                self.add_body(&mut scene, console);
+            }
+            scene
         };
         if let Some(guides) = self.guides {
             scene.grooms.iter_mut().for_each(|g| g.guides = guides);
@@ -122,6 +126,19 @@ impl Input {
             scene.solver.substeps = substeps;
         }
         Ok(scene)
+    }
+}
+
+impl Input {
+    /// Adds the meshes of the groom's own file to the scene, if it has any.
+    fn add_body(&self, scene: &mut Scene, console: Console) {
+        match read_body(&self.path, &self.units.into()) {
+            Ok(loaded) => {
+                tell(&loaded.notes, &loaded.repairs, console);
+                (scene.body, scene.vertex_cache) = (Some(loaded.value.body), loaded.value.vertex_cache);
+            }
+            Err(why) => console.note(format_args!("the hair has no body: {why}")),
+        }
     }
 }
 

@@ -211,6 +211,11 @@ impl Manifest {
         Ok(Self { path, content, replaced: BTreeSet::new(), written: None })
     }
 
+    /// Describes everything that the files depend on, as JSON.
+    pub fn origin(&self) -> String {
+        serde_json::to_string(&self.content.origin).unwrap_or_default()
+    }
+
     /// Returns those of `frames` that are not finished, and prints which files are made again although they
     /// exist.
     pub fn unfinished(&self, frames: &[u32], pattern: &Path, console: Console) -> Vec<u32> {

@@ -20,8 +20,19 @@ pub fn play(
     fps: FrameRate,
     mut show: impl FnMut(u32, &Stage, &FrameReport) -> Result<(), Fault>,
 ) -> Result<Ending, Fault> {
-    for frame in 1..=last {
-        let report = if frame == 1 { FrameReport::default() } else { stage.step_frame(fps) };
+    play_from(1, stage, last, fps, |frame, stage, report| show(frame, stage, report))
+}
+
+/// Like [`play`], for a stage that is at the time of frame `first`, which takes no step. `show` may write to the stage.
+pub fn play_from(
+    first: u32,
+    stage: &mut Stage,
+    last: u32,
+    fps: FrameRate,
+    mut show: impl FnMut(u32, &mut Stage, &FrameReport) -> Result<(), Fault>,
+) -> Result<Ending, Fault> {
+    for frame in first..=last {
+        let report = if frame == first { FrameReport::default() } else { stage.step_frame(fps) };
         show(frame, stage, &report)?;
         if frame < last && interrupt::asked() {
             return Ok(Ending::Stopped(frame));

@@ -97,7 +97,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             return Err(Fault::Usage(text));
         }
         (_, Some(range)) => range,
-        (_, None) => FrameRange::whole(scene.clip.as_ref(), options.fps),
+        (_, None) => FrameRange::whole(scene.motion_duration(), options.fps),
     };
     let mut wanted: Vec<u32> = range.numbers().collect();
     let sink = match kind {

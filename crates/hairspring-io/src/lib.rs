@@ -8,6 +8,7 @@
 
 mod bytes;
 mod error;
+mod external;
 mod frame_writer;
 mod load;
 mod motion;
@@ -22,10 +23,12 @@ mod tfx_text;
 mod units;
 
 pub mod bvh;
+pub mod csv;
 pub mod gltf;
 pub mod hair;
 pub mod makehuman;
 pub mod obj;
+pub mod pc2;
 pub mod scene;
 pub mod tfx;
 pub mod tfxbone;
@@ -33,6 +36,7 @@ pub mod tfxmesh;
 pub mod usc;
 
 pub use error::{Error, ErrorKind, Place, Problem, Result};
+pub use external::{CacheDescription, CacheWriter, ExternalFile, ExternalFormats, check_cache_format, set_external_formats, write_cache};
 pub use frame_writer::{FrameError, FrameWriter};
 pub use gltf::Character;
 pub use load::{Format, Loaded, read_body, read_bones, read_groom, read_motion};

@@ -3,7 +3,7 @@
 use crate::{
     Character, Error, Motion, Problem, ReadOptions, Result, bvh,
     bytes::read_regular,
-    gltf, hair, obj,
+    csv, external, gltf, hair, obj,
     strands::Read,
     text, tfx, tfxbone, tfxmesh,
     units::{FileUnits, FitUnit, apply_to_body, extent, settle},
@@ -34,6 +34,14 @@ pub enum Format {
     Gltf,
     /// Biovision `.bvh`: a motion.
     Bvh,
+    /// `.usd`, `.usda`, `.usdc` or `.usdz`: grooms and bodies that move, by the Python package.
+    Usd,
+    /// Alembic `.abc`: grooms and bodies that move, by the Python package.
+    Alembic,
+    /// `.pc2`: positions of points over time.
+    Pc2,
+    /// `.csv`: a groom as a table of points.
+    Csv,
     /// `.toml`: a scene.
     Scene,
 }
@@ -41,6 +49,9 @@ pub enum Format {
 impl Format {
     /// Formats that hold a groom. These can also be written.
     pub const GROOMS: [Format; 3] = [Format::Hair, Format::Tfx, Format::Usc];
+
+    /// Formats that the Python package reads and writes.
+    pub const EXTERNAL: [Format; 2] = [Format::Usd, Format::Alembic];
 
     /// Returns the format for a path's extension, ignoring case; `None` for an unknown extension.
     pub fn of(path: &Path) -> Option<Format> {
@@ -54,6 +65,10 @@ impl Format {
             "obj" => Self::Obj,
             "gltf" | "glb" | "vrm" => Self::Gltf,
             "bvh" => Self::Bvh,
+            "usd" | "usda" | "usdc" | "usdz" => Self::Usd,
+            "abc" => Self::Alembic,
+            "pc2" => Self::Pc2,
+            "csv" => Self::Csv,
             "toml" => Self::Scene,
             _ => return None,
         })
@@ -70,6 +85,10 @@ impl Format {
             Self::Obj => "obj",
             Self::Gltf => "gltf",
             Self::Bvh => "bvh",
+            Self::Usd => "usd",
+            Self::Alembic => "abc",
+            Self::Pc2 => "pc2",
+            Self::Csv => "csv",
             Self::Scene => "toml",
         }
     }
@@ -93,7 +112,7 @@ pub struct Loaded<T> {
 /// Largest file that is read [bytes]: 4 GiB, about 300 million points.
 const MAX_FILE: u64 = 4 << 30;
 
-/// Reads a hairstyle from a `.hair`, `.tfx` or `.data` file, or from the polylines of an `.obj` file, and repairs it
+/// Reads a hairstyle from a `.hair`, `.tfx`, `.data` or `.csv` file, or from the polylines of an `.obj` file, and repairs it
 /// (`groom::sanitize`).
 ///
 /// # Errors
@@ -108,26 +127,43 @@ pub(crate) fn read_groom_on(
     options: &ReadOptions,
     fit: Option<FitUnit<'_>>,
 ) -> Result<Loaded<Groom>> {
-    let known = [&Format::GROOMS[..], &[Format::Obj]].concat();
+    let known = [&Format::GROOMS[..], &[Format::Obj, Format::Csv], &Format::EXTERNAL].concat();
     let format = format_of(path, &known, "a hairstyle")?;
     check_scale(path, options)?;
-    let data = bytes_of(path)?;
-    let read: std::result::Result<Read, Problem> = match format {
-        Format::Hair => hair::read(&data),
-        Format::Tfx => tfx::read(&data),
-        Format::Obj => obj::read_groom(&data),
-        _ => usc::read(&data),
+    let external = Format::EXTERNAL.contains(&format);
+    let read: Read = if external {
+        external::read_groom(path, options)?
+    } else {
+        let data = bytes_of(path)?;
+        match format {
+            Format::Hair => hair::read(&data),
+            Format::Tfx => tfx::read(&data),
+            Format::Obj => obj::read_groom(&data),
+            Format::Csv => csv::read(&data),
+            _ => usc::read(&data),
+        }
+        .map_err(|p| p.in_file(path))?
     };
-    let read = read.map_err(|p| p.in_file(path))?;
-    if read.groom.strand_count() == 0 {
-        return Err(Problem::whole("the file holds no strands").in_file(path));
-    }
-    let (mut groom, scale, notes) = read.finish(options, fit);
-    if let Some(far) = first_imprecise(&groom) {
-        return Err(Problem::whole(far.to_string()).in_file(path));
-    }
+    // External readers have already applied the options.
+    let options = if external { &ReadOptions::default() } else { options };
+    let (mut groom, scale, notes) = match read.groom.strand_count() {
+        0 => (read.groom, 1.0, Vec::new()),
+        _ => read.finish(options, fit),
+    };
+    check_groom(path, &groom)?;
     let repairs = sanitize(&mut groom);
     Ok(Loaded { value: groom, format, scale, repairs, notes: plain(notes) })
+}
+
+/// Checks that a groom has strands, near enough to the origin.
+fn check_groom(path: &Path, groom: &Groom) -> Result<()> {
+    if groom.strand_count() == 0 {
+        return Err(Problem::whole("the file holds no strands").in_file(path));
+    }
+    match first_imprecise(groom) {
+        Some(far) => Err(Problem::whole(far.to_string()).in_file(path)),
+        None => Ok(()),
+    }
 }
 
 /// Reads a body from a `.gltf`, `.glb`, `.vrm`, `.obj` or `.tfxmesh` file, with the motions that it holds.
@@ -146,11 +182,16 @@ pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>
 
 /// Reads a body, which may have joints and motions but no mesh.
 fn read_character(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
-    let format = format_of(path, &[Format::Gltf, Format::Obj, Format::TfxMesh], "a body")?;
+    let known = [&[Format::Gltf, Format::Obj, Format::TfxMesh], &Format::EXTERNAL[..]].concat();
+    let format = format_of(path, &known, "a body")?;
     check_scale(path, options)?;
+    if Format::EXTERNAL.contains(&format) {
+        let (character, units, notes) = external::read_body(path, options)?;
+        return Ok(in_meters(character, format, &ReadOptions::default(), units, notes));
+    }
     let data = bytes_of(path)?;
     let mut units = FileUnits::default();
-    let (mut character, mut notes) = match format {
+    let (character, notes) = match format {
         Format::Gltf => {
             // The specification requires meters and Y up (§3.4).
             units.scale = Some(1.0);
@@ -160,13 +201,27 @@ fn read_character(path: &Path, options: &ReadOptions) -> Result<Loaded<Character
         _ => tfxmesh::parse(&data).map(|body| (still(body), Vec::new())),
     }
     .map_err(|p| p.in_file(path))?;
+    Ok(in_meters(character, format, options, units, notes))
+}
+
+/// Converts a body to meters and Y up.
+fn in_meters(
+    mut character: Character,
+    format: Format,
+    options: &ReadOptions,
+    units: FileUnits,
+    mut notes: Vec<String>,
+) -> Loaded<Character> {
     let extent = extent(character.body.mesh.positions.iter().copied());
     let (scale, turn) = settle(options, units, extent, &mut notes);
     apply_to_body(&mut character.body, &mut character.clips, scale, turn);
+    if let Some(cache) = &mut character.vertex_cache {
+        cache.frames.iter_mut().flatten().for_each(|p| *p = turn * (*p * scale));
+    }
     let parts = character.body.mesh.parts.iter_mut().map(|part| &mut part.name);
     let joints = character.body.joints.iter_mut().map(|joint| &mut joint.name);
     make_printable(parts.chain(joints));
-    Ok(Loaded { value: character, format, scale, repairs: Repairs::default(), notes: plain(notes) })
+    Loaded { value: character, format, scale, repairs: Repairs::default(), notes: plain(notes) }
 }
 
 /// Reads a motion from a `.bvh` file, or the animation called `name` from a `.gltf` or `.glb` file. If `name`
@@ -238,7 +293,7 @@ pub(crate) fn list(names: &[&str]) -> String {
 }
 
 fn still(body: Body) -> Character {
-    Character { body, clips: Vec::new() }
+    Character { body, ..Character::default() }
 }
 
 /// Returns the format of `path`, which must be one of `known`.

@@ -20,9 +20,9 @@ use hairspring::{
 use std::{borrow::Cow, iter::Enumerate};
 
 /// Color of a surface whose file does not specify one: a neutral light gray, linear RGB.
-pub(crate) const DEFAULT_COLOR: Vec3 = Vec3::splat(0.5);
+pub const DEFAULT_COLOR: Vec3 = Vec3::splat(0.5);
 /// Roughness of a surface whose file does not specify one: skin and cloth are rather matte.
-pub(crate) const DEFAULT_ROUGHNESS: f32 = 0.6;
+pub const DEFAULT_ROUGHNESS: f32 = 0.6;
 
 /// Reads the mesh of an `.obj` file, in its own units.
 ///

@@ -10,6 +10,7 @@ mod look;
 mod picture;
 mod settings;
 pub mod stage;
+mod vertex_cache;
 
 pub use camera::Camera;
 pub use color::{color_from_hex, deserialize_color, deserialize_optional_color};
@@ -18,6 +19,7 @@ pub use hand::Hand;
 pub use look::{HairColor, HairLook};
 pub use picture::{Background, Picture};
 pub use settings::{Collider, Guides, InitialContact, Shape};
+pub use vertex_cache::VertexCache;
 
 use glam::Vec3;
 use hairspring::{
@@ -82,6 +84,8 @@ pub struct Scene {
     pub colliders: Vec<Collider>,
     /// Motion of the body's joints; `None`: at rest.
     pub clip: Option<Clip>,
+    /// Motion of the body's vertices, for a body without a skin; then `clip` must be `None`.
+    pub vertex_cache: Option<VertexCache>,
     /// The directional wind.
     pub wind: Wind,
     /// Wind sources.
@@ -126,6 +130,12 @@ pub struct SceneError {
 }
 
 impl Scene {
+    /// Returns the duration of the body's motion [s]; `None` if it has none.
+    pub fn motion_duration(&self) -> Option<f64> {
+        let clip = self.clip.as_ref().filter(|clip| clip.frame_count() > 1).map(Clip::duration);
+        clip.or_else(|| self.vertex_cache.as_ref().filter(|c| c.frames.len() > 1).map(VertexCache::duration))
+    }
+
     /// Checks all settings of the scene by the rules that hold for scene files.
     ///
     /// # Errors

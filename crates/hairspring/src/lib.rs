@@ -69,7 +69,7 @@
 //! | feature | default | |
 //! | --- | --- | --- |
 //! | `parallel` | yes | Steps run on all threads of a `rayon` pool. Without it, `rayon` is not compiled, and results have the same bits. |
-//! | `serde` | no | Settings, materials and manipulators implement `Serialize` and `Deserialize`, in the form of scene files; so do the vectors of `glam`. |
+//! | `serde` | no | Settings, materials, manipulators and snapshots implement `Serialize` and `Deserialize`, settings in the form of scene files; so do the vectors of `glam`. |
 //!
 //! # Errors and panics
 //!

@@ -53,7 +53,7 @@ impl Document {
     pub fn save(&mut self, path: &Path) -> Result<(), AppError> {
         let path = destination(path)?;
         let from = settled(&self.path);
-        let move_to = |text: &str| moved(text, [&from, &path].map(|p| p.parent().unwrap_or(Path::new(""))));
+        let move_to = |text: &str| text_in_folder(text, [&from, &path].map(|p| p.parent().unwrap_or(Path::new(""))));
         let text = move_to(&self.draft.text)?;
         atomically(&path, |out| out.write_all(text.as_bytes()))
             .map_err(|why| AppError::new(format!("{} could not be written: {why}", path.display())))?;
@@ -65,8 +65,11 @@ impl Document {
     }
 }
 
-/// Returns the text with paths relative to one folder rewritten relative to another.
-fn moved(text: &str, [from, to]: [&Path; 2]) -> Result<String, AppError> {
+/// Returns the text of a scene with the paths of named files, relative to one folder, rewritten relative to another.
+///
+/// # Errors
+/// Returns an error if the text is not TOML.
+pub fn text_in_folder(text: &str, [from, to]: [&Path; 2]) -> Result<String, AppError> {
     if from == to {
         return Ok(text.to_owned());
     }
@@ -78,10 +81,11 @@ fn moved(text: &str, [from, to]: [&Path; 2]) -> Result<String, AppError> {
     Ok(edited.to_string())
 }
 
-/// Renames every file that a scene names: the values of `file`, `rig`, `weights` and `bones`.
+/// Renames every file that a scene names: the values of `file`, `rig`, `weights`, `bones` and
+/// `vertex_cache`.
 fn rename_files(table: &mut dyn toml_edit::TableLike, rename: &dyn Fn(&str) -> PathBuf) {
     for (key, item) in table.iter_mut() {
-        let names_file = ["file", "rig", "weights", "bones"].contains(&key.get());
+        let names_file = ["file", "rig", "weights", "bones", "vertex_cache"].contains(&key.get());
         match item {
             Item::Value(Value::String(name)) if names_file => {
                 let new = rename(name.value()).to_string_lossy().into_owned();

@@ -9,6 +9,7 @@ mod history;
 mod material;
 mod open;
 
+pub use files::text_in_folder;
 pub use history::Way;
 pub use open::{KINDS, new_scene, replaces_scene};
 

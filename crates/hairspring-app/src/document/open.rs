@@ -11,7 +11,7 @@ use std::{
 /// The kinds of file that open as a scene: title and extensions, for file dialogs.
 pub const KINDS: [(&str, &[&str]); 4] = [
     ("Scene", &["toml"]),
-    ("Groom", &["hair", "tfx", "data", "obj"]),
+    ("Groom", &["hair", "tfx", "data", "obj", "csv"]),
     ("Body", &["glb", "gltf", "vrm", "obj", "tfxmesh"]),
     ("Motion", &["bvh"]),
 ];
@@ -32,11 +32,11 @@ impl Role {
     fn of(path: &Path) -> Option<Self> {
         Some(match Format::of(path)? {
             Format::Scene => Self::Scene,
-            Format::Hair | Format::Tfx | Format::Usc => Self::Groom,
+            Format::Hair | Format::Tfx | Format::Usc | Format::Csv | Format::Usd | Format::Alembic => Self::Groom,
             Format::Obj if holds_polylines(path) => Self::Groom,
             Format::Obj | Format::Gltf | Format::TfxMesh => Self::Body,
             Format::Bvh => Self::Motion,
-            Format::TfxBone => return None,
+            Format::TfxBone | Format::Pc2 => return None,
         })
     }
 }

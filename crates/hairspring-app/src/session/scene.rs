@@ -100,7 +100,7 @@ impl Session {
 
     /// Starts the scenes that were read, at time 0.
     pub(super) fn play(&mut self, (loaded, second): Read) {
-        self.length = loaded.value.clip.as_ref().map(|clip| clip.duration()).filter(|d| *d > f64::from(STEP));
+        self.length = loaded.value.motion_duration().filter(|d| *d > f64::from(STEP));
         self.notes = loaded.notes;
         let joints = loaded.value.body.iter().flat_map(|body| &body.joints);
         self.joints = joints.map(|joint| joint.name.clone()).collect();

@@ -102,7 +102,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let settings = scene_differences([&a.settings, &b.settings], [&a.text, &b.text])
         .map_err(|why| Fault::Content(why.to_string()))?;
     let files = a.files.changed(&b.files);
-    let whole = |scene: &Scene| FrameRange::whole(scene.clip.as_ref(), fps).last;
+    let whole = |scene: &Scene| FrameRange::whole(scene.motion_duration(), fps).last;
     let frames = match options.seconds {
         Some(seconds) => ((f64::from(seconds) * fps.hertz()).round() as u32 + 1).max(2),
         None => whole(&a.scene).max(whole(&b.scene)),

@@ -15,6 +15,7 @@ mod skeleton;
 use crate::Problem;
 use glam::Affine3A;
 use hairspring::body::{Body, Clip, Skin};
+use hairspring_scene::VertexCache;
 use skeleton::Skeleton;
 
 /// A body and the motions from the same file.
@@ -24,6 +25,8 @@ pub struct Character {
     pub body: Body,
     /// Motions of its joints.
     pub clips: Vec<Clip>,
+    /// Motion of its vertices, in files without a skeleton.
+    pub vertex_cache: Option<VertexCache>,
 }
 
 /// Reads a glTF file, and returns notes about what was left out. The format is in meters, Y up. `sibling` returns
@@ -43,7 +46,7 @@ pub fn parse(
     let (mesh, joints, weights) = mesh::read(&document, &buffers, &skeleton, &mut notes)?;
     let clips = animation::clips(&document, &buffers, &skeleton, &mut notes)?;
     let skin = Skin { joints, weights, inverse_bind: skeleton.inverse_bind };
-    Ok((Character { body: Body { mesh, joints: skeleton.joints, skin: Some(skin) }, clips }, notes))
+    Ok((Character { body: Body { mesh, joints: skeleton.joints, skin: Some(skin) }, clips, vertex_cache: None }, notes))
 }
 
 /// Returns the transform, or `None` if it is singular or not finite.

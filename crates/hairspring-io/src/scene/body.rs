@@ -13,6 +13,13 @@ impl Reader<'_> {
     /// Reads a `[body]` or `[collision]` with its additional files. `what` names it in error messages.
     pub(super) fn body(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
         let mut character = self.piece(named, what)?;
+        if let Some(cache) = &named.vertex_cache {
+            if what != "body" {
+                let text = "`vertex_cache` is for [body] only; other meshes move with its joints".into();
+                return Err(self.wrong(named.file.span().start, "vertex_cache", text));
+            }
+            character.vertex_cache = Some(self.vertex_cache(named, cache, &character.body)?);
+        }
         for file in &named.more {
             let piece = self.body(file, what)?.body;
             let carrier =

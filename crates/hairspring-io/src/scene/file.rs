@@ -123,7 +123,7 @@ define_settings! {
     #[derive(PartialEq)]
     file struct BodyFile {
         /// File of the mesh.
-        file: FileName, "none", {text "`.glb`, `.gltf`, `.vrm`, `.obj`, `.tfxmesh`"};
+        file: FileName, "none", {text "`.glb`, `.gltf`, `.vrm`, `.obj`, `.tfxmesh`; with the Python package `.usd`, `.abc`"};
         /// Size of one unit of the file.
         scale: Option<f32>, ["m"], {above 0}, default "from the format, or guessed and reported";
         /// The axis that points up.
@@ -143,6 +143,10 @@ define_settings! {
         /// then moved.
         transform: Option<Placement>, "none", {text "a table with the fields of `groom.transform`"},
             default "none of them";
+        /// `[body]` only: motion of its vertices, which must be those of the mesh, in its unit and axes.
+        vertex_cache: Option<FileName>, "none", {text "`.pc2`, or numbered meshes such as `body.####.obj`"}, default "the file's own, or none";
+        /// Frame rate of `vertex_cache`.
+        vertex_rate: Option<f64> = 24.0, ["Hz"], {0.01 to 1000000}, when When::Given("body.vertex_cache");
         /// `[collision]`, `[[sheet]]` and `more` only: the body's joint that moves a mesh without joints of its
         /// own.
         joint: Option<String>, "none", {text "the name of a joint of the body"}, default "the body's first";

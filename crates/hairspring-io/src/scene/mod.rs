@@ -17,6 +17,7 @@ pub mod parameters;
 mod props;
 mod sentence;
 mod settings;
+mod vertex_cache;
 
 use crate::{Error, Format, Loaded, Problem, ReadOptions, Result, load, read_body, text::as_text};
 use file::{FileName, SceneFile};

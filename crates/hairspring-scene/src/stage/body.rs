@@ -1,7 +1,7 @@
 //! The colliders of a scene, and the body that moves them.
 
 use super::{
-    body_pose::BodyPose,
+    body_pose::{BodyPose, Pose},
     charged::StagedCharged,
     joints::Joints,
     reach::Reach,
@@ -9,7 +9,7 @@ use super::{
     surface::{Surface, SurfaceKind},
     thickness::ThinMesh,
 };
-use crate::{Collider, InitialContact, Scene, Shape};
+use crate::{Collider, InitialContact, Scene, Shape, VertexCache};
 use hairspring::{
     body::Body,
     collide::{ColliderPose, ColliderShape, MovingCollider},
@@ -103,9 +103,9 @@ impl Mesh {
 impl StagedBody {
     /// Creates the body in the pose in which hair is built on it. Attaches colliders and charged bodies to the
     /// joints in `joints`.
-    pub(super) fn new(scene: &Scene, joints: &Joints) -> Self {
+    pub(super) fn new(scene: &Scene, joints: &Joints, cache: Option<VertexCache>) -> Self {
         let mut staged = Self {
-            pose: BodyPose::new(scene),
+            pose: BodyPose::new(scene, cache),
             obstacles: Vec::new(),
             carriers: Vec::new(),
             meshes: 0,
@@ -222,15 +222,16 @@ impl StagedBody {
     /// pose.
     fn add_mesh(&mut self, scene: &Scene, mesh: Mesh, making: SurfaceKind) {
         let Some(body) = mesh.of(scene) else { return };
-        if body.skin.is_none() {
+        let cached = matches!(mesh, Mesh::Closed) && scene.collision.is_none() && self.pose.has_cache();
+        if body.skin.is_none() && !cached {
             let within = scene.body.as_ref().and_then(|b| self.reach.bounds(&b.mesh.positions, |p| p));
             self.add(making.rigid(body, within), self.carrier(0));
             return;
         }
         let mut rest = body.clone();
         let pieces = match making {
-            SurfaceKind::Field(cell) => rigid_parts::take(&mut rest, self.pose.anchor_joint(), PIECE * cell),
-            SurfaceKind::Sheet(_) => Vec::new(),
+            SurfaceKind::Field(cell) if !cached => rigid_parts::take(&mut rest, self.pose.anchor_joint(), PIECE * cell),
+            _ => Vec::new(),
         };
         let surface = Surface::new(making, &rest);
         let rest = (!pieces.is_empty()).then_some(rest);
@@ -249,9 +250,9 @@ impl StagedBody {
         let within = self.reach.bounds(self.pose.positions(), |p| anchor.inverse_point(p));
         let parts = |Deforming { surface, mesh, rest, .. }: &Deforming| {
             let body = Deforming::body(rest, *mesh, scene);
-            body.map_or(1, |body| surface.parts(body, (self.pose.world(), anchor), within))
+            body.map_or(1, |body| surface.parts(body, self.pose.current(), within))
         };
-        let mut poses = Vec::new();
+        let mut poses: Vec<Pose> = Vec::new();
         let mut shares = vec![1; self.surfaces.len()];
         if let (Some((from, to)), Some(_)) = (since, &scene.clip) {
             shares = self.surfaces.iter().map(parts).collect();
@@ -268,7 +269,7 @@ impl StagedBody {
                 self.pose.at(scene, time)
             }));
         }
-        poses.push((self.pose.world().to_vec(), anchor));
+        poses.push(self.pose.current().clone());
         for (Deforming { surface, mesh, rest, obstacle }, share) in self.surfaces.iter_mut().zip(shares) {
             let Some(body) = Deforming::body(rest, *mesh, scene) else { continue };
             let every = poses.len() / share;

@@ -1,18 +1,49 @@
-//! The posed body: joints, skin, and the cuts of its clip.
+//! The posed body: joints, skin or vertex cache, and the cuts of its clip.
 
 use super::PosedBody;
-use crate::Scene;
+use crate::{Scene, VertexCache};
 use glam::{Affine3A, Vec3};
 use hairspring::{
     body::{Body, Cuts, Mesh},
     math::RigidTransform,
 };
 
+/// The pose of a body at one time.
+#[derive(Clone, Default)]
+pub(super) struct Pose {
+    /// Model-space matrix of each joint.
+    pub(super) world: Vec<Affine3A>,
+    /// The frame that roots move with, in whose space colliders of deforming meshes are.
+    pub(super) anchor: RigidTransform,
+    /// Vertices of a body without a skin that deforms, in the space of joint 0 [m].
+    pub(super) shape: Option<Vec<Vec3>>,
+}
+
+impl Pose {
+    /// Returns the function that maps a vertex of `body` to its position [m].
+    pub(super) fn vertices<'a>(&'a self, body: &'a Body) -> impl Fn(usize) -> Vec3 + 'a {
+        let matrices = body.skin.as_ref().map(|skin| skin.matrices(&self.world));
+        let first = self.world.first().copied().unwrap_or(Affine3A::IDENTITY);
+        move |v| match (&body.skin, &matrices, &self.shape) {
+            (Some(skin), Some(matrices), _) => skin.place(v, body.mesh.positions[v], matrices),
+            (_, _, Some(shape)) => first.transform_point3(shape[v]),
+            _ => first.transform_point3(body.mesh.positions[v]),
+        }
+    }
+
+    /// Returns whether the vertices of `body` move relative to each other.
+    pub(super) fn deforms(&self, body: &Body) -> bool {
+        body.skin.is_some() || self.shape.is_some()
+    }
+}
+
 /// Current pose of the scene's body.
 pub(super) struct BodyPose {
-    /// Model-space matrix of each joint, at rest and currently.
+    /// Model-space matrix of each joint at rest.
     rest: Vec<Affine3A>,
-    world: Vec<Affine3A>,
+    current: Pose,
+    /// Deformation of a body without a skin, in the space of joint 0.
+    cache: Option<VertexCache>,
     /// Whether separate props are at a different pose initially than at rest.
     apart: bool,
     /// Rigid motion of the whole body in addition to its clip.
@@ -21,31 +52,31 @@ pub(super) struct BodyPose {
     anchor: usize,
     /// Cuts of the clip.
     cuts: Cuts,
-    positions: Vec<Vec3>,
-    normals: Vec<Vec3>,
+    /// The mesh in the current pose.
+    posed: Mesh,
 }
 
 impl BodyPose {
     /// Creates the pose in which hair is built on the body: at rest, with separate props where they are
     /// initially.
-    pub(super) fn new(scene: &Scene) -> Self {
+    pub(super) fn new(scene: &Scene, cache: Option<VertexCache>) -> Self {
         let rest = scene.body.as_ref().map(|b| b.world(&b.rest_pose())).unwrap_or_default();
         let anchor = scene.body.as_ref().map_or(0, |b| anchor_joint(b, scene));
         let mut pose = Self {
             apart: false,
-            world: Vec::new(),
+            current: Pose::default(),
             rest,
+            cache,
             moved: RigidTransform::default(),
             anchor,
             cuts: Cuts::default(),
-            positions: Vec::new(),
-            normals: Vec::new(),
+            posed: scene.body.as_ref().map_or_else(Mesh::default, |body| body.mesh.clone()),
         };
-        pose.world = pose.first_world(scene);
-        pose.apart = pose.world != pose.rest;
-        if let Some(body) = &scene.body {
-            body.skinned(&pose.world, &mut pose.positions, &mut pose.normals);
-        }
+        pose.current.world = pose.first_world(scene);
+        pose.apart = pose.current.world != pose.rest;
+        pose.current.anchor = pose.anchor_of(&pose.current.world);
+        // A body with a vertex cache is at rest in its first pose.
+        pose.place_vertices(scene);
         pose.find_cuts(scene);
         pose
     }
@@ -69,25 +100,45 @@ impl BodyPose {
 
     /// Poses the body for `time` [s].
     pub(super) fn set(&mut self, scene: &Scene, time: f64) {
-        match self.at(scene, time) {
-            Some((world, _)) => self.world = world,
-            None => self.world.clone_from(&self.rest),
-        }
+        self.current = self.at(scene, time).unwrap_or_else(|| Pose { world: self.rest.clone(), ..Pose::default() });
         if self.moved != RigidTransform::default() {
             let moved = Affine3A::from_rotation_translation(self.moved.rotation, self.moved.translation);
-            self.world.iter_mut().for_each(|joint| *joint = moved * *joint);
+            self.current.world.iter_mut().for_each(|joint| *joint = moved * *joint);
         }
-        if let Some(body) = &scene.body {
-            body.skinned(&self.world, &mut self.positions, &mut self.normals);
-        }
+        self.current.anchor = self.anchor_of(&self.current.world);
+        self.place_vertices(scene);
     }
 
-    /// Returns the joints and the anchor at `time` [s] by the clip alone; `None` without a clip.
-    pub(super) fn at(&self, scene: &Scene, time: f64) -> Option<(Vec<Affine3A>, RigidTransform)> {
+    /// Updates the posed mesh.
+    fn place_vertices(&mut self, scene: &Scene) {
+        let Some(body) = &scene.body else { return };
+        let Mesh { positions, normals, .. } = &mut self.posed;
+        if self.current.shape.is_none() {
+            body.skinned(&self.current.world, positions, normals);
+            return;
+        }
+        let place = self.current.vertices(body);
+        positions.iter_mut().enumerate().for_each(|(v, p)| *p = place(v));
+        self.posed.compute_normals();
+    }
+
+    /// Returns the pose at `time` [s] by the clip alone; `None` without a clip.
+    pub(super) fn at(&self, scene: &Scene, time: f64) -> Option<Pose> {
         let (body, clip) = (scene.body.as_ref()?, scene.clip.as_ref()?);
         let world = body.world(&self.cuts.sample(clip, time));
-        let anchor = RigidTransform::from_affine(&world[self.anchor]);
-        Some((world, anchor))
+        let shape = self.cache.as_ref().map(|cache| {
+            let (frame, t) = cache.place(time);
+            // The shape changes at a cut at once, as the joint does.
+            let next = [frame, frame + 1].map(|frame| frame as f64 / cache.rate);
+            let cut = self.cuts.motion_between(body, clip, next.into()).iter().any(Option::is_some);
+            cache.at((frame, if cut { 0.0 } else { t }))
+        });
+        Some(Pose { anchor: self.anchor_of(&world), world, shape })
+    }
+
+    /// Returns the frame that roots move with if the joints are at `world`.
+    fn anchor_of(&self, world: &[Affine3A]) -> RigidTransform {
+        world.get(self.anchor).map_or(RigidTransform::default(), RigidTransform::from_affine)
     }
 
     /// Returns the joints in the pose in which hair is built on the body; empty without a body.
@@ -110,7 +161,7 @@ impl BodyPose {
 
     /// Returns the motion since rest of what `joint` carries; the identity without a joint.
     pub(super) fn carried(&self, joint: Option<usize>) -> RigidTransform {
-        let of = |j: usize| RigidTransform::from_affine(&(self.world[j] * self.rest[j].inverse()));
+        let of = |j: usize| RigidTransform::from_affine(&(self.current.world[j] * self.rest[j].inverse()));
         joint.map_or(RigidTransform::default(), of)
     }
 
@@ -123,7 +174,7 @@ impl BodyPose {
     /// moves.
     pub(super) fn first_corners(&self, mesh: &Mesh, triangle: usize) -> [Vec3; 3] {
         match self.apart {
-            true => mesh.triangles[triangle].map(|i| self.positions[i as usize]),
+            true => mesh.triangles[triangle].map(|i| self.posed.positions[i as usize]),
             false => mesh.corners(triangle),
         }
     }
@@ -135,28 +186,33 @@ impl BodyPose {
 
     /// Returns the frame that roots move with.
     pub(super) fn anchor(&self) -> RigidTransform {
-        self.world.get(self.anchor).map_or(RigidTransform::default(), RigidTransform::from_affine)
+        self.current.anchor
     }
 
     /// Returns the anchor at rest.
     pub(super) fn rest_anchor(&self) -> RigidTransform {
-        self.rest.get(self.anchor).map_or(RigidTransform::default(), RigidTransform::from_affine)
+        self.anchor_of(&self.rest)
     }
 
-    /// Returns the current joints.
-    pub(super) fn world(&self) -> &[Affine3A] {
-        &self.world
+    /// Returns the current pose.
+    pub(super) fn current(&self) -> &Pose {
+        &self.current
+    }
+
+    /// Returns whether the scene's body deforms by a vertex cache.
+    pub(super) fn has_cache(&self) -> bool {
+        self.cache.is_some()
     }
 
     /// Returns the current vertex positions [m]; empty without a body.
     pub(super) fn positions(&self) -> &[Vec3] {
-        &self.positions
+        &self.posed.positions
     }
 
     /// Returns what a renderer draws.
     pub(super) fn posed<'a>(&'a self, scene: &'a Scene) -> Option<PosedBody<'a>> {
         let mesh = &scene.body.as_ref()?.mesh;
-        Some(PosedBody { mesh, positions: &self.positions, normals: &self.normals })
+        Some(PosedBody { mesh, positions: &self.posed.positions, normals: &self.posed.normals })
     }
 }
 
@@ -193,4 +249,20 @@ fn anchor_joint(body: &Body, scene: &Scene) -> usize {
         }
     }
     (0..weight.len()).max_by(|a, b| weight[*a].total_cmp(&weight[*b]).then(b.cmp(a))).unwrap_or(0)
+}
+
+/// Takes the vertex cache out of the scene. Its rigid motion, that of the skin under the roots, becomes the scene's clip.
+pub(super) fn take_vertex_cache(scene: &mut Scene) -> Option<VertexCache> {
+    let mut cache = scene.vertex_cache.take()?;
+    let mesh = &scene.body.as_ref()?.mesh;
+    let roots = scene.grooms.iter().flat_map(|g| &g.groom.roots);
+    let mut vertices: Vec<u32> = roots.flat_map(|root| mesh.triangles[root.triangle as usize]).collect();
+    vertices.sort_unstable();
+    vertices.dedup();
+    // A few vertices in a plane still define a motion, but none at all do not.
+    if vertices.is_empty() {
+        vertices = (0..mesh.positions.len() as u32).collect();
+    }
+    scene.clip = Some(cache.split_rigid_motion(&mesh.positions, &vertices));
+    Some(cache)
 }

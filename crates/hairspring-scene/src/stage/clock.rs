@@ -7,6 +7,7 @@ use std::{fmt, str::FromStr};
 
 /// A frame rate as a fraction, so that 24000/1001 is exact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FrameRate {
     frames: u32,
     seconds: u32,
@@ -102,6 +103,7 @@ impl fmt::Display for FrameRate {
 
 /// Elapsed time: the number of frames since the rate last changed.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Clock {
     /// Time at which the count began [s].
     start: f64,

@@ -14,12 +14,8 @@
 //! can be. The half-thickness of a thin shell is the distance that it extends to each side.
 
 use super::thickness::{Place, normal, places, thicknesses};
-use glam::{Affine3A, Vec3};
-use hairspring::{
-    body::{Mesh, Skin},
-    math::RigidTransform,
-    simulation::MAX_TRAVEL,
-};
+use glam::Vec3;
+use hairspring::{body::Mesh, simulation::MAX_TRAVEL};
 
 /// Edge of the sampling cubes, in cells of the field [1]: two cubes across a finger. In each cube, one
 /// triangle is sampled for each direction.
@@ -63,22 +59,20 @@ impl FastSurfaceProbe {
         Self { probes, most: MOST_OF_SHEET }
     }
 
-    /// Returns the number of time slices for a frame. The body moves from the vertices `before`, in the
-    /// anchor's space, to the current pose of its joints and anchor. Surfaces outside the box `within`, where
+    /// Returns the number of time slices for a frame. The body moves from the vertices `before` to
+    /// those that `place` returns, both in the anchor's space. Surfaces outside the box `within`, where
     /// the hair is, do not count.
     pub fn parts(
         &self,
-        (mesh, skin): (&Mesh, &Skin),
+        mesh: &Mesh,
         before: &[Vec3],
-        (world, anchor): (&[Affine3A], RigidTransform),
+        place: impl Fn(u32) -> Vec3,
         within: Option<(Vec3, Vec3)>,
     ) -> usize {
-        let matrices = skin.matrices(world);
-        let place = |v: u32| skin.place(v as usize, mesh.positions[v as usize], &matrices);
         let ask = |probe: &Probe| {
             let triangle = mesh.triangles[probe.triangle as usize];
             let old = triangle.map(|v| before[v as usize]);
-            let now = triangle.map(|v| anchor.inverse_point(place(v)));
+            let now = triangle.map(&place);
             let all = || old.iter().chain(&now);
             let lo = all().fold(Vec3::INFINITY, |lo, p| lo.min(*p));
             let hi = all().fold(Vec3::NEG_INFINITY, |hi, p| hi.max(*p));
@@ -95,8 +89,8 @@ impl FastSurfaceProbe {
 mod tests {
     use super::*;
 
-    /// A square tube of 2 cm along X, from 0 to 8 cm. A joint moves its far half.
-    fn finger() -> (Mesh, Skin) {
+    /// A square tube of 2 cm along X, from 0 to 8 cm.
+    fn finger() -> Mesh {
         let ring = |k: u32| {
             let x = 0.01 * k as f32;
             [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]
@@ -110,21 +104,20 @@ mod tests {
                 triangles.extend([[a, b, b + 4], [a, b + 4, a + 4]]);
             }
         }
-        let skin = Skin {
-            joints: (0..36).map(|v| [u16::from(v >= 20), 0, 0, 0]).collect(),
-            weights: vec![[1.0, 0.0, 0.0, 0.0]; 36],
-            inverse_bind: vec![Affine3A::IDENTITY; 2],
-        };
-        (Mesh { positions, triangles, ..Mesh::default() }, skin)
+        Mesh { positions, triangles, ..Mesh::default() }
+    }
+
+    /// Its vertices with the far half moved.
+    fn bent(mesh: &Mesh, moved: Vec3) -> impl Fn(u32) -> Vec3 {
+        move |v| mesh.positions[v as usize] + if v >= 20 { moved } else { Vec3::ZERO }
     }
 
     #[test]
     fn only_what_goes_across_itself_near_hair_asks_for_parts() {
-        let (mesh, skin) = finger();
+        let mesh = finger();
         let limbs = FastSurfaceProbe::of_solid(&mesh, 0.002);
         let parts = |moved: Vec3, within: Option<(Vec3, Vec3)>| {
-            let world = [Affine3A::IDENTITY, Affine3A::from_translation(moved)];
-            limbs.parts((&mesh, &skin), &mesh.positions, (&world, RigidTransform::default()), within)
+            limbs.parts(&mesh, &mesh.positions, bent(&mesh, moved), within)
         };
         // 2 cm thick: half a centimeter for each slice.
         assert_eq!(parts(Vec3::ZERO, None), 1);
@@ -142,11 +135,10 @@ mod tests {
 
     #[test]
     fn a_sheet_asks_for_parts_by_its_thickness() {
-        let (mesh, skin) = finger();
+        let mesh = finger();
         let sheet = FastSurfaceProbe::of_sheet(&mesh, 0.002);
         let parts = |moved: Vec3| {
-            let world = [Affine3A::IDENTITY, Affine3A::from_translation(moved)];
-            sheet.parts((&mesh, &skin), &mesh.positions, (&world, RigidTransform::default()), None)
+            sheet.parts(&mesh, &mesh.positions, bent(&mesh, moved), None)
         };
         // A millimeter for each slice.
         assert_eq!(parts(Vec3::Y * 0.0009), 1);

@@ -10,6 +10,7 @@ use hairspring::{
 
 /// State of a hand.
 #[derive(Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum HandState {
     /// It has yet to begin.
     Before,

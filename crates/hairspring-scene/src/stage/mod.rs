@@ -6,6 +6,7 @@ mod body_pose;
 mod charged;
 mod clock;
 mod fast_surface;
+mod forces;
 mod hair;
 mod initial_push;
 mod join_grooms;
@@ -81,6 +82,22 @@ pub enum StageError {
         /// Joints of the body.
         body_joints: usize,
     },
+    /// A frame of the vertex cache has another number of vertices than the body.
+    #[error(
+        "frame {frame} of the vertex cache has {vertices} vertices, and the body has {expected}: export the motion without \
+         changes of topology"
+    )]
+    VertexCount {
+        /// Index of the frame.
+        frame: usize,
+        /// Number of its vertices.
+        vertices: usize,
+        /// Number of the body's vertices.
+        expected: usize,
+    },
+    /// The vertex cache cannot move the body.
+    #[error("the vertex cache cannot be used: {0}")]
+    VertexCache(&'static str),
     /// The settings have another number of grooms than the stage.
     #[error(
         "the settings have {settings} grooms, but the stage has {grooms}: create a new stage for other grooms"
@@ -184,7 +201,8 @@ impl Stage {
             scene.grooms.iter_mut().for_each(|g| bind_roots(&mut g.groom, &body.mesh));
         }
         let joints = Joints::new(&scene, scene.body.as_ref())?;
-        let body = StagedBody::new(&scene, &joints);
+        let cache = body_pose::take_vertex_cache(&mut scene);
+        let body = StagedBody::new(&scene, &joints, cache);
         let grooms = std::mem::take(&mut scene.grooms);
         let mut hair: Vec<StagedHair> = Vec::with_capacity(grooms.len());
         for groom in grooms {
@@ -486,7 +504,28 @@ fn check(scene: &Scene) -> Result<(), StageError> {
             body_joints: body.joints.len(),
         });
     }
-    Ok(())
+    check_vertex_cache(scene)
+}
+
+fn check_vertex_cache(scene: &Scene) -> Result<(), StageError> {
+    let Some(cache) = &scene.vertex_cache else { return Ok(()) };
+    let Some(body) = &scene.body else {
+        return Err(StageError::VertexCache("the scene has no body"));
+    };
+    if body.skin.is_some() || scene.clip.is_some() {
+        return Err(StageError::VertexCache("the body already moves by a skeleton; remove one of the two motions"));
+    }
+    if !(cache.rate.is_finite() && cache.rate > 0.0) {
+        return Err(StageError::VertexCache("its frame rate is not above 0"));
+    }
+    if cache.frames.is_empty() {
+        return Err(StageError::VertexCache("it has no frames"));
+    }
+    let expected = body.mesh.positions.len();
+    if let Some(frame) = cache.frames.iter().position(|frame| frame.len() != expected) {
+        return Err(StageError::VertexCount { frame, vertices: cache.frames[frame].len(), expected });
+    }
+    in_range("a vertex of the vertex cache", cache.frames.iter().flatten())
 }
 
 /// Rejects coordinates that are not finite or beyond [`MAX_COORDINATE`].

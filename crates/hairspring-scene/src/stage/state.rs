@@ -6,8 +6,10 @@ use hairspring::{
     simulation::{Snapshot, SnapshotMismatch},
 };
 
-/// A copy of the state of a [`Stage`], from [`Stage::state`].
+/// A copy of the state of a [`Stage`], from [`Stage::state`]. With the feature `serde`, it can be written to a file, which the same
+/// version reads for the same scene.
 #[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StageState {
     simulation: Snapshot,
     clock: Clock,
@@ -19,6 +21,11 @@ pub struct StageState {
 }
 
 impl StageState {
+    /// Returns the time since the start of the scene [s].
+    pub fn time(&self) -> f64 {
+        self.clock.time()
+    }
+
     /// Upper bound of the size of the state in memory [bytes]: that of the whole simulation.
     pub fn bytes(&self) -> usize {
         self.bytes

@@ -1,6 +1,6 @@
 //! The box that hair and head stay in over the whole motion, for a camera that is set automatically.
 
-use super::{Stage, hair::StagedHair};
+use super::{Stage, body_pose::Pose, hair::StagedHair};
 use crate::Scene;
 use glam::{Affine3A, Quat, Vec3};
 use hairspring::{body::Body, groom::Groom};
@@ -56,19 +56,21 @@ fn times(scene: &Scene) -> Vec<f64> {
 /// The body in one pose, of which only some vertices are needed.
 struct Posed<'a> {
     body: &'a Body,
-    /// The transform of each joint from the rest pose; one for a rigid body.
+    /// The transform of each joint from the rest pose; one for a body without a skin.
     matrices: Vec<Affine3A>,
+    /// See [`Pose::shape`].
+    shape: Option<Vec<Vec3>>,
 }
 
 impl<'a> Posed<'a> {
-    fn new(body: &'a Body, world: Vec<Affine3A>) -> Self {
+    fn new(body: &'a Body, Pose { world, shape, .. }: Pose) -> Self {
         let matrices = body.skin.as_ref().map_or_else(|| world.clone(), |skin| skin.matrices(&world));
-        Self { body, matrices }
+        Self { body, matrices, shape }
     }
 
     /// Position of a vertex [m].
     fn vertex(&self, vertex: u32) -> Vec3 {
-        let rest = self.body.mesh.positions[vertex as usize];
+        let rest = self.shape.as_ref().unwrap_or(&self.body.mesh.positions)[vertex as usize];
         match &self.body.skin {
             Some(skin) => skin.place(vertex as usize, rest, &self.matrices),
             None => self.matrices.first().map_or(rest, |by| by.transform_point3(rest)),
@@ -96,7 +98,10 @@ impl<'a> Subject<'a> {
     /// `hair`: the box of the hair at rest. Vertices belong to the subject within `reach` [m] of it.
     fn new(stage: &'a Stage, hair: Bounds, reach: f32) -> Self {
         let Scene { body, wind, gravity, solver, .. } = &stage.scene;
-        let first = body.as_ref().map(|body| Posed::new(body, stage.body.pose().first_world(&stage.scene)));
+        let first = body.as_ref().map(|body| {
+            let world = stage.body.pose().first_world(&stage.scene);
+            Posed::new(body, Pose { world, ..Pose::default() })
+        });
         let mut vertices = Vec::new();
         if let Some(first) = &first {
             let near = |p: Vec3| p.cmpge(hair.0 - reach).all() && p.cmple(hair.1 + reach).all();
@@ -115,9 +120,8 @@ impl<'a> Subject<'a> {
     /// The box in the pose at `time` [s].
     fn bounds(&self, time: f64) -> Option<Bounds> {
         let Stage { scene, body, hair, .. } = self.stage;
-        let world = body.pose().at(scene, time).map(|(world, _)| world);
-        let now = match (&scene.body, world) {
-            (Some(body), Some(world)) => Some(Posed::new(body, world)),
+        let now = match (&scene.body, body.pose().at(scene, time)) {
+            (Some(body), Some(pose)) => Some(Posed::new(body, pose)),
             _ => None,
         };
         let now = now.as_ref().or(self.first.as_ref());

@@ -1,12 +1,11 @@
 //! Colliders made from meshes: the distance field of a closed mesh and the thin shells of open ones. A
 //! deforming collider is rebuilt in the anchor's space whenever it has moved there.
 
-use super::fast_surface::FastSurfaceProbe;
-use glam::{Affine3A, Vec3};
+use super::{body_pose::Pose, fast_surface::FastSurfaceProbe};
+use glam::Vec3;
 use hairspring::{
     body::Body,
     collide::{ColliderShape, SignedDistanceField, ThinShell, Voxelizer},
-    math::RigidTransform,
 };
 use std::sync::Arc;
 
@@ -26,7 +25,7 @@ pub(super) enum SurfaceKind {
     Sheet(f32),
 }
 
-/// Builds and rebuilds the collider of one skinned mesh.
+/// Builds and rebuilds the collider of one mesh that deforms.
 pub(super) struct Surface {
     making: SurfaceKind,
     voxelizer: Voxelizer,
@@ -35,12 +34,8 @@ pub(super) struct Surface {
     /// Vertices in the anchor's space, at the current and the previous update.
     now: Vec<Vec3>,
     before: Vec<Vec3>,
-    normals: Vec<Vec3>,
     limbs: FastSurfaceProbe,
 }
-
-/// Joint matrices of a body, and the anchor whose space its colliders are in.
-pub(super) type Pose = (Vec<Affine3A>, RigidTransform);
 
 impl SurfaceKind {
     /// Returns an empty collider of this kind.
@@ -90,7 +85,7 @@ fn is_free(shape: &mut ColliderShape) -> bool {
 }
 
 impl Surface {
-    /// Creates the surface of a body that has a skin.
+    /// Creates the surface of a body that deforms.
     pub(super) fn new(making: SurfaceKind, body: &Body) -> Self {
         let limbs = match making {
             SurfaceKind::Field(cell) => FastSurfaceProbe::of_solid(&body.mesh, cell),
@@ -103,7 +98,6 @@ impl Surface {
             spare: Vec::new(),
             now: Vec::new(),
             before: Vec::new(),
-            normals: Vec::new(),
         }
     }
 
@@ -112,11 +106,14 @@ impl Surface {
     pub(super) fn parts(
         &self,
         body: &Body,
-        (world, anchor): (&[Affine3A], RigidTransform),
+        pose: &Pose,
         within: Option<(Vec3, Vec3)>,
     ) -> usize {
-        let Some(skin) = &body.skin else { return 1 };
-        self.limbs.parts((&body.mesh, skin), &self.now, (world, anchor), within)
+        if !pose.deforms(body) {
+            return 1;
+        }
+        let place = pose.vertices(body);
+        self.limbs.parts(&body.mesh, &self.now, |v| pose.anchor.inverse_point(place(v as usize)), within)
     }
 
     /// Rebuilds `shape` from `body` in the last of the poses, and its previous slices from the poses before
@@ -145,13 +142,14 @@ impl Surface {
         &mut self,
         shape: &mut ColliderShape,
         body: &Body,
-        (world, anchor): &Pose,
+        pose: &Pose,
         within: Option<(Vec3, Vec3)>,
         fresh: bool,
     ) {
         std::mem::swap(&mut self.now, &mut self.before);
-        body.skinned(world, &mut self.now, &mut self.normals);
-        self.now.iter_mut().for_each(|p| *p = anchor.inverse_point(*p));
+        let place = pose.vertices(body);
+        self.now.clear();
+        self.now.extend((0..body.mesh.positions.len()).map(|v| pose.anchor.inverse_point(place(v))));
         let moved =
             self.now.iter().zip(&self.before).map(|(a, b)| a.distance_squared(*b)).fold(0.0, f32::max);
         let (SurfaceKind::Field(fine) | SurfaceKind::Sheet(fine)) = self.making;
@@ -185,6 +183,7 @@ impl Surface {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::Affine3A;
     use hairspring::body::{Joint, Mesh, Skin, Trs};
 
     #[test]
@@ -203,7 +202,7 @@ mod tests {
         let making = SurfaceKind::Sheet(0.002);
         let (mut surface, mut shape) = (Surface::new(making, &body), making.nothing());
         let mut play = |up: f32, fresh: bool| {
-            let pose = (world(up).to_vec(), RigidTransform::default());
+            let pose = Pose { world: world(up).to_vec(), ..Pose::default() };
             surface.update(&mut shape, &body, std::iter::once(&pose), None, fresh);
             let ColliderShape::Sheet(sheet) = &shape else { unreachable!("a sheet is made") };
             let at = |x: f32| {

@@ -31,6 +31,7 @@ pub(crate) struct Spring {
 
 /// One attached point.
 #[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Bond {
     /// Index of its strand in the groom.
     pub strand: u32,
@@ -54,6 +55,7 @@ impl Bond {
 
 /// Bonds, sorted by strand and point.
 #[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Bonds(pub Vec<Bond>);
 
 impl Bonds {

@@ -120,6 +120,7 @@ impl Charged {
 /// # Ok::<(), hairspring::simulation::BuildError>(())
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ChargedBall {
     /// Its center at the start and at the end of the frame, in world space [m].
     pub centers: [Vec3; 2],

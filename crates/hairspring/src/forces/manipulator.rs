@@ -32,6 +32,7 @@ pub enum Manipulator {
 
 /// A manipulator in use.
 #[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ActiveManipulator {
     /// Identifier of the manipulator.
     pub number: u32,

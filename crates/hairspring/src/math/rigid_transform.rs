@@ -6,6 +6,7 @@ use glam::{Affine3A, Mat3, Quat, Vec3};
 ///
 /// For an example, see [`math`](crate::math).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RigidTransform {
     /// Unit rotation.
     pub rotation: Quat,

@@ -18,6 +18,7 @@ pub const LANES: usize = 8;
 /// One number of each of the tile's eight strands, in single precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(32))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Row(pub [f32; LANES]);
 
 /// One number for each strand that is being solved, in the precision of the solve: eight `f32` or four `f64`.

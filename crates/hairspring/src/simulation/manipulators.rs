@@ -12,10 +12,12 @@ use glam::Vec3;
 ///
 /// For an example, see [`forces`](crate::forces).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ManipulatorId(u32);
 
 /// The active manipulators.
 #[derive(Clone, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Manipulators {
     /// Number of manipulators that were ever added.
     added: u32,

@@ -11,6 +11,7 @@ use crate::{
 
 /// Positions, velocities, tensions and contact forces of the simulated strands, and the motion of their roots.
 #[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct StrandState {
     /// Pose of the anchor at the end of the last step.
     pub(super) anchor: RigidTransform,
@@ -35,10 +36,12 @@ pub(crate) struct StrandState {
     pub(super) last_h: f32,
 }
 
-/// A copy of the state of a [`Simulation`], from [`Simulation::snapshot`].
+/// A copy of the state of a [`Simulation`], from [`Simulation::snapshot`]. With the feature `serde`, it can be written to a
+/// file, which the same version of the library reads.
 ///
 /// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Snapshot {
     state: StrandState,
     /// Contacts between strands.

@@ -22,6 +22,7 @@ use glam::{Mat3, Quat, Vec3};
 
 /// Motion of the anchor in the last frame, used to detect teleports.
 #[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Motion {
     /// Velocity of the anchor's origin [m/s].
     velocity: Vec3,

@@ -182,6 +182,7 @@ pub mod anisotropic_drag {
 
 /// A hold on one point of eight strands.
 #[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct HoldRows {
     /// The point.
     pub point: u32,

@@ -44,6 +44,7 @@ pub struct SolverParams {
 
 /// A contact of two segments that are near each other.
 #[derive(Clone, Copy)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Contact {
     /// The segments, the lower index first.
     pub pair: [u32; 2],
@@ -93,12 +94,14 @@ impl ContactResponse {
 
 /// A force or impulse on the first segment of a pair.
 #[derive(Clone, Copy, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 struct Force {
     along: f32,
     across: Vec3,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 enum Bond {
     None,
     Holds,

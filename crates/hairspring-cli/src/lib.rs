@@ -1,0 +1,116 @@
+//! The `hairspring` program, as a function of its arguments: the binary and the Python package run it.
+
+mod args;
+mod bake;
+mod bench;
+mod compare;
+mod console;
+mod convert;
+mod demo;
+mod fault;
+mod film;
+mod frames;
+mod info;
+mod input;
+mod interrupt;
+mod live;
+mod manifest;
+mod moment;
+mod output;
+mod picture;
+mod play;
+mod render;
+mod report;
+mod totals;
+mod validate;
+
+use args::{Cli, Command};
+use clap::Parser;
+use console::Console;
+use fault::Fault;
+use std::{ffi::OsString, io::Write, path::Path};
+
+/// Runs the program with its arguments, of which the first is its name. Returns the exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    fault::report_panics();
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let outcome = std::panic::catch_unwind(|| {
+        let cli = match Cli::try_parse_from(arguments) {
+            Ok(cli) => cli,
+            Err(refused) => return explain(&refused),
+        };
+        run_command(cli)?;
+        console::finish().map(|()| 0)
+    });
+    match outcome {
+        Ok(Ok(code)) => code,
+        Ok(Err(fault)) => {
+            console::complain(&fault);
+            fault.code()
+        }
+        // The panic hook has already printed the error.
+        Err(_) => fault::PANICKED,
+    }
+}
+
+/// Prints the help, the version, or what is wrong with the command line.
+fn explain(refused: &clap::Error) -> Result<u8, Fault> {
+    let printed = refused.print().and_then(|()| std::io::stdout().flush());
+    if refused.use_stderr() {
+        return Ok(Fault::Usage(String::new()).code());
+    }
+    printed.map_err(console::unprinted)?;
+    Ok(0)
+}
+
+/// Returns the scene that `hairspring bake` with these arguments simulates. The first argument is the name of the program.
+///
+/// # Errors
+/// One sentence, if the arguments are not those of a bake or the scene cannot be read.
+pub fn bake_scene(arguments: impl IntoIterator<Item = OsString>) -> Result<hairspring_scene::Scene, String> {
+    let cli = Cli::try_parse_from(arguments).map_err(|refused| refused.to_string())?;
+    match cli.command {
+        // What the reader notes, the bake itself has printed.
+        Some(Command::Bake(options)) => options.scene(Console::new(true, false, args::ProgressForm::Text)).map_err(|fault| fault.to_string()),
+        _ => Err("the command is not `bake`".into()),
+    }
+}
+
+/// Returns the text of the scene file `path` with other values, for a file in `folder`: the paths of the files that it names are
+/// rewritten. `values` holds keys such as `solver.substeps`, and values as TOML.
+///
+/// # Errors
+/// One sentence, if the file cannot be read or a value is not valid.
+pub fn scene_with(path: &Path, folder: &Path, values: &[(String, String)]) -> Result<String, String> {
+    let mut text = hairspring_io::scene_text(path).map_err(|why| why.to_string())?;
+    for (key, value) in values {
+        let wrong = |why: &dyn std::fmt::Display| format!("{key} = {value}: {why}");
+        text = hairspring_app::set_in_text(&text, key, value).map_err(|why| wrong(&why))?;
+        hairspring_io::read_settings(path, &text).map_err(|why| wrong(&why))?;
+    }
+    let from = path.parent().unwrap_or(Path::new(""));
+    hairspring_app::text_in_folder(&text, [from, folder]).map_err(|why| why.to_string())
+}
+
+fn run_command(cli: Cli) -> Result<(), Fault> {
+    interrupt::listen(cli.quiet);
+    if let Some(threads) = cli.threads {
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads as usize)
+            .build_global()
+            .map_err(|e| Fault::Usage(format!("{threads} threads could not be started: {e}")))?;
+    }
+    let console = Console::new(cli.quiet, cli.verbose, cli.progress);
+    match cli.command {
+        None => live::run_or_demo(console),
+        Some(Command::Live(options)) => live::run(&options),
+        Some(Command::Demo(options)) => demo::run(&options, console),
+        Some(Command::Render(options)) => render::run(&options, console),
+        Some(Command::Bake(options)) => bake::run(&options, console),
+        Some(Command::Convert(options)) => convert::run(&options, console),
+        Some(Command::Info(options)) => info::run(&options, console),
+        Some(Command::Bench(options)) => bench::run(&options, console),
+        Some(Command::Compare(options)) => compare::run(&options, console),
+        Some(Command::Validate(options)) => validate::run(&options, console),
+    }
+}

@@ -1,0 +1,136 @@
+//! Strands as a table of points: text with one point a line, and the names of the columns in the first line.
+//!
+//! ```text
+//! strand,x,y,z,radius
+//! 0,0.0,0.1,0.0,0.00004
+//! 0,0.0,0.11,0.0,0.00003
+//! 1,0.01,0.1,0.0,0.00004
+//! ```
+//!
+//! `strand` (or `curve`, `id`), `x`, `y` and `z` are required; `radius` or `width`, and `r`, `g`, `b` (linear, 0 to 1) are optional;
+//! other columns are ignored with a note. Columns are separated by commas, semicolons or tabs. The points of a strand are
+//! consecutive, root first.
+
+use crate::{Place, Problem, strands::Read, text::as_text, units::FileUnits};
+use glam::Vec3;
+use hairspring::groom::Groom;
+
+/// Reads a table of points, in its own units.
+///
+/// # Errors
+/// Returns an error for a missing column, a line with another number of columns, or text that is not a number.
+///
+/// ```
+/// let groom = hairspring_io::csv::parse(b"strand,x,y,z\n0,0,0,0\n0,0,0.1,0\n7,1,0,0\n7,1,0.1,0\n")?;
+/// assert_eq!(groom.offsets, [0, 2, 4]);
+/// # Ok::<(), hairspring_io::Problem>(())
+/// ```
+pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
+    read(data).map(Read::in_file_units)
+}
+
+/// The columns of a table, by their index.
+struct Columns {
+    strand: usize,
+    position: [usize; 3],
+    /// Column of the radius, and its factor: 0.5 for a width.
+    radius: Option<(usize, f32)>,
+    color: Option<[usize; 3]>,
+    count: usize,
+}
+
+pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
+    let text = as_text(data);
+    let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim())).filter(|(_, line)| !line.is_empty());
+    let (_, header) = lines.next().ok_or_else(|| Problem::whole("the table is empty"))?;
+    let separator = [',', ';', '\t'].into_iter().find(|s| header.contains(*s)).unwrap_or(',');
+    let mut notes = Vec::new();
+    let columns = columns(header, separator, &mut notes)?;
+    let mut groom = Groom { offsets: vec![0], ..Groom::default() };
+    let (mut radii, mut last) = (Vec::new(), None);
+    for (number, line) in lines {
+        let wrong = |text: String| Problem::new(Place::Line(number), text);
+        let cells: Vec<&str> = line.split(separator).map(str::trim).collect();
+        if cells.len() != columns.count {
+            let text = format!("the line has {} columns, and the first line names {}", cells.len(), columns.count);
+            return Err(wrong(text));
+        }
+        let cell = |k: usize| {
+            let number = cells[k].parse::<f32>().ok();
+            number.ok_or_else(|| wrong(format!("expected a number in column {}, but found {:?}", k + 1, cells[k])))
+        };
+        let vector = |k: [usize; 3]| Ok::<_, Problem>(Vec3::new(cell(k[0])?, cell(k[1])?, cell(k[2])?));
+        let strand = cells[columns.strand];
+        if last.is_some_and(|last| last != strand) {
+            groom.offsets.push(groom.points.len() as u32);
+        }
+        last = Some(strand);
+        groom.points.push(vector(columns.position)?);
+        if let Some((k, factor)) = columns.radius {
+            radii.push(factor * cell(k)?);
+        }
+        if let Some(k) = columns.color {
+            groom.colors.push(vector(k)?.clamp(Vec3::ZERO, Vec3::ONE));
+        }
+    }
+    if last.is_some() {
+        groom.offsets.push(groom.points.len() as u32);
+    }
+    let radii = columns.radius.map(|_| radii);
+    Ok(Read { groom, radii, true_radii: false, units: FileUnits::default(), notes })
+}
+
+fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Columns, Problem> {
+    let names: Vec<String> =
+        header.split(separator).map(|name| name.trim().trim_matches('"').to_ascii_lowercase()).collect();
+    let find = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&name.as_str()));
+    let required = |wanted: &[&str]| {
+        find(wanted).ok_or_else(|| {
+            let text = format!("the first line names no column `{}`; it must name strand, x, y and z", wanted[0]);
+            Problem::new(Place::Line(1), text)
+        })
+    };
+    let color = [find(&["r"]), find(&["g"]), find(&["b"])];
+    let radius = find(&["radius"]).map(|k| (k, 1.0)).or_else(|| find(&["width"]).map(|k| (k, 0.5)));
+    let columns = Columns {
+        strand: required(&["strand", "curve", "id"])?,
+        position: [required(&["x"])?, required(&["y"])?, required(&["z"])?],
+        radius,
+        color: if let [Some(r), Some(g), Some(b)] = color { Some([r, g, b]) } else { None },
+        count: names.len(),
+    };
+    let used = |k: usize| {
+        k == columns.strand
+            || columns.position.contains(&k)
+            || columns.radius.is_some_and(|(r, _)| r == k)
+            || columns.color.is_some_and(|c| c.contains(&k))
+    };
+    let ignored: Vec<&str> = (0..names.len()).filter(|k| !used(*k)).map(|k| names[k].as_str()).collect();
+    if !ignored.is_empty() {
+        notes.push(format!("the columns {} are not used", ignored.join(", ")));
+    }
+    Ok(columns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_read_with_any_separator_and_order() {
+        let read = read(b"\xEF\xBB\xBFid;z;y;x;width;age\n a;1;2;3;0.0001;9\na;1;2;4;0.0002;9\nb;0;0;0;0.0001;9\n").unwrap();
+        assert_eq!(read.groom.offsets, [0, 2, 3]);
+        assert_eq!(read.groom.points[0], Vec3::new(3.0, 2.0, 1.0));
+        assert_eq!(read.radii.unwrap(), [0.00005, 0.0001, 0.00005]);
+        assert_eq!(read.notes, ["the columns age are not used"]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        let error = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
+        assert!(error("strand,x,y\n").contains("no column `z`"));
+        assert!(error("strand,x,y,z\n0,1,2\n").contains("3 columns"));
+        assert!(error("strand,x,y,z\n0,1,2,a\n").contains("column 4"));
+        assert!(error("").contains("empty"));
+    }
+}

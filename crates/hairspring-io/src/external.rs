@@ -1,0 +1,156 @@
+//! Formats that a host program reads and writes: USD and Alembic, by the Python package.
+
+use crate::{Axis, Character, Error, Format, ReadOptions, Result, load, strands::Read, units::FileUnits};
+use hairspring::groom::Groom;
+use std::{
+    path::{Path, PathBuf},
+    sync::{OnceLock, RwLock},
+};
+
+/// What an external reader returns: Y up, in meters if the unit is known.
+pub struct ExternalFile<T> {
+    /// The content.
+    pub value: T,
+    /// Whether the file states its unit, or the options do. Otherwise it is guessed.
+    pub unit_known: bool,
+    /// What was left out, one sentence each.
+    pub notes: Vec<String>,
+}
+
+/// Reads and writes the formats of [`Format::EXTERNAL`]. Errors are sentences without the name of the file.
+pub trait ExternalFormats: Send + Sync {
+    /// Reads all curves of a file as one groom.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    fn read_groom(&self, path: &Path, options: &ReadOptions) -> std::result::Result<ExternalFile<Groom>, String>;
+
+    /// Reads the meshes of a file as one body.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    fn read_body(&self, path: &Path, options: &ReadOptions) -> std::result::Result<ExternalFile<Character>, String>;
+
+    /// Begins to write strands that move to one file.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    fn write_cache(
+        &self,
+        path: &Path,
+        description: &CacheDescription,
+    ) -> std::result::Result<Box<dyn CacheWriter>, String>;
+}
+
+/// What does not change in a file of strands that move.
+#[derive(Clone, Debug, Default)]
+pub struct CacheDescription {
+    /// Frames per second [Hz].
+    pub fps: f64,
+    /// Number of the first frame.
+    pub first_frame: f64,
+    /// Number of samples.
+    pub frames: u32,
+    /// Samples per frame, 1 or more.
+    pub per_frame: u32,
+    /// The grooms, and their names.
+    pub grooms: Vec<(String, Groom)>,
+    /// Strands of each groom that are simulated; shape `[grooms][strands]`.
+    pub guides: Vec<Vec<bool>>,
+    /// The scene or groom that was baked.
+    pub source: String,
+    /// USD file that the written one is an animated layer over.
+    pub over: Option<PathBuf>,
+}
+
+/// A file of strands that move, one frame after the other. The file appears under its name when it is finished.
+pub trait CacheWriter {
+    /// Writes the points of all grooms at `frame`, one groom after the other [m], and their velocities [m/s].
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    fn frame(
+        &mut self,
+        frame: f64,
+        points: &[glam::Vec3],
+        velocities: &[glam::Vec3],
+    ) -> std::result::Result<(), String>;
+
+    /// Completes the file.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    fn finish(self: Box<Self>) -> std::result::Result<(), String>;
+}
+
+static FORMATS: OnceLock<RwLock<Option<Box<dyn ExternalFormats>>>> = OnceLock::new();
+
+/// Sets what reads and writes the external formats in this process. It replaces an earlier one.
+pub fn set_external_formats(formats: Box<dyn ExternalFormats>) {
+    *FORMATS.get_or_init(RwLock::default).write().unwrap_or_else(|e| e.into_inner()) = Some(formats);
+}
+
+/// Calls `act` with what reads and writes the external formats.
+fn with_formats<T>(
+    path: &Path,
+    act: impl FnOnce(&dyn ExternalFormats) -> std::result::Result<T, String>,
+) -> Result<T> {
+    let formats = FORMATS.get_or_init(RwLock::default).read().unwrap_or_else(|e| e.into_inner());
+    let unsupported = |reason: String| Error::Unsupported { path: path.to_owned(), reason };
+    let Some(formats) = formats.as_deref() else {
+        let reason = "USD and Alembic are read and written by the program of the Python package; install it with \
+                      `pip install .[usd,alembic]`";
+        return Err(unsupported(reason.into()));
+    };
+    act(formats).map_err(unsupported)
+}
+
+/// Reads a groom, with its unit still to be guessed if it is not known.
+pub(crate) fn read_groom(path: &Path, options: &ReadOptions) -> Result<Read> {
+    // Reports a missing file as for other formats, and records the content for a manifest.
+    load::bytes_of(path)?;
+    let ExternalFile { value, unit_known, notes } = with_formats(path, |formats| formats.read_groom(path, options))?;
+    let mut groom = value;
+    let radii = Some(std::mem::take(&mut groom.radii)).filter(|radii| !radii.is_empty());
+    Ok(Read { groom, radii, true_radii: false, units: units(unit_known), notes })
+}
+
+/// Reads a body, with its unit still to be guessed if it is not known.
+pub(crate) fn read_body(path: &Path, options: &ReadOptions) -> Result<(Character, FileUnits, Vec<String>)> {
+    load::bytes_of(path)?;
+    let ExternalFile { value, unit_known, notes } = with_formats(path, |formats| formats.read_body(path, options))?;
+    Ok((value, units(unit_known), notes))
+}
+
+/// External readers apply the options that are given, and turn the content to Y up.
+fn units(known: bool) -> FileUnits {
+    FileUnits { scale: known.then_some(1.0), up: Some(Axis::Y) }
+}
+
+/// Checks whether there is a writer for a file of moving strands.
+///
+/// # Errors
+/// Returns an error for another extension, or without a writer for the format.
+pub fn check_cache_format(path: &Path) -> Result<()> {
+    match Format::of(path) {
+        Some(Format::Pc2) => Ok(()),
+        _ => with_formats(path, |_| Ok(())),
+    }
+}
+
+/// Begins to write strands that move to one file: `.pc2`, or an external format.
+///
+/// # Errors
+/// Returns an error for another extension, without a writer for the format, or if the file cannot be written.
+pub fn write_cache(path: &Path, description: &CacheDescription) -> Result<Box<dyn CacheWriter>> {
+    match Format::of(path) {
+        Some(Format::Pc2) => {
+            let writer = crate::pc2::Writer::create(path, description);
+            writer.map(|w| Box::new(w) as Box<dyn CacheWriter>).map_err(|reason| Error::Unwritable {
+                path: path.to_owned(),
+                reason,
+            })
+        }
+        _ => with_formats(path, |formats| formats.write_cache(path, description)),
+    }
+}

@@ -1,0 +1,24 @@
+//! The program `hairspring` inside of the package.
+
+use crate::{errors::setting, scene::Scene};
+use pyo3::prelude::*;
+use std::{ffi::OsString, path::PathBuf};
+
+/// Runs the program with the arguments `arguments`, of which the first is its name. Returns the exit code.
+#[pyfunction]
+pub fn run_command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
+    py.detach(|| hairspring_cli::run(arguments))
+}
+
+/// Returns the scene that `hairspring bake` with these arguments simulates.
+#[pyfunction]
+pub fn bake_scene(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<Scene> {
+    let scene = py.detach(|| hairspring_cli::bake_scene(arguments)).map_err(setting)?;
+    Ok(Scene::of(scene))
+}
+
+/// Returns the text of a scene file with other values, for a file in `folder`. `values` is a list of keys and values as TOML.
+#[pyfunction]
+pub fn scene_with(path: PathBuf, folder: PathBuf, values: Vec<(String, String)>) -> PyResult<String> {
+    hairspring_cli::scene_with(&path, &folder, &values).map_err(setting)
+}

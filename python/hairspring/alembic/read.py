@@ -1,0 +1,284 @@
+"""Readers of Alembic archives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Iterator
+
+import numpy as np
+from alembic3d import Abc, AbcGeom
+
+from ..formats import FACTORS, MAX_POSITIONS, Curves, FormatError, MovingMesh, as_lengths_and_points, guides_from_flags
+from ..shapes import expand, on_curve, triangulate, varying_count
+
+BASES = {"kBezierBasis": "bezier", "kBsplineBasis": "bspline", "kCatmullromBasis": "catmullRom"}
+SCOPES = {
+    "kConstantScope": "constant",
+    "kUniformScope": "uniform",
+    "kVaryingScope": "varying",
+    "kVertexScope": "vertex",
+    "kFacevaryingScope": "faceVarying",
+}
+Z_UP = np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])
+
+
+def open_archive(path: Path):
+    """Opens an archive."""
+    try:
+        return Abc.IArchive(str(path))
+    except RuntimeError as error:
+        raise FormatError(f"the archive cannot be opened ({str(error).splitlines()[0]})") from None
+
+
+def objects(parent, kind, matrix=None) -> Iterator[tuple]:
+    """All objects of a type below `parent`, each with the list of transforms above it."""
+    above = matrix or []
+    for child in parent.children:
+        header = child.getHeader()
+        if kind.matches(header):
+            yield kind(parent, child.getName()), above
+        if AbcGeom.IXform.matches(header):
+            yield from objects(child, kind, [*above, AbcGeom.IXform(parent, child.getName()).getSchema()])
+        else:
+            yield from objects(child, kind, above)
+
+
+def world(above: list, selector) -> np.ndarray:
+    """The matrix [4, 4] of nested transforms at a time; for row vectors."""
+    total = np.eye(4)
+    for schema in reversed(above):
+        if schema.getNumSamples() == 0:
+            continue
+        sample = schema.getValue(selector)
+        m = sample.getMatrix()
+        total = total @ np.array([[m[i][j] for j in range(4)] for i in range(4)])
+        if not sample.getInheritsXforms():
+            break
+    return total
+
+
+def place(points, matrix: np.ndarray, to: np.ndarray) -> np.ndarray:
+    """Points in world space, in meters and Y up."""
+    points = np.asarray(points, np.float64).reshape(-1, 3)
+    return (points @ matrix[:3, :3] + matrix[3, :3]) @ to
+
+
+def attribute(schema, kinds: tuple, *names: str):
+    """The values of the first of these attributes, and its interpolation."""
+    parameters = schema.getArbGeomParams()
+    if not parameters.valid():
+        return None, ""
+    known = {header.getName(): header for header in parameters.propertyheaders}
+    for name in names:
+        for kind in kinds:
+            if name in known and kind.matches(known[name]):
+                return parameter_values(kind(parameters, name))
+    return None, ""
+
+
+def parameter_values(parameter):
+    """The first values of a geometry parameter, and its interpolation."""
+    if not parameter.valid() or parameter.getNumSamples() == 0:
+        return None, ""
+    values = np.asarray(parameter.getExpandedValue().getVals())
+    return np.atleast_1d(values), SCOPES.get(str(parameter.getScope()).split(".")[-1], "constant")
+
+
+INTEGERS = (AbcGeom.IInt32GeomParam, AbcGeom.IInt16GeomParam, AbcGeom.IUInt32GeomParam, AbcGeom.IInt64GeomParam)
+TRIPLES = (AbcGeom.IV3iGeomParam, AbcGeom.IV3fGeomParam, AbcGeom.IInt32GeomParam, AbcGeom.IFloatGeomParam)
+PAIRS = (AbcGeom.IV2fGeomParam, AbcGeom.IP2fGeomParam, AbcGeom.IFloatGeomParam)
+COLORS = (AbcGeom.IC3fGeomParam, AbcGeom.IV3fGeomParam)
+FLOATS = (AbcGeom.IFloatGeomParam, AbcGeom.IDoubleGeomParam)
+
+
+def read_curves(path: Path, scale: float | None = None, up: str | None = None) -> Curves:
+    """Reads all curves of an archive as one groom, at their first sample.
+
+    Each object becomes a group, unless `groom_group_id` gives the groups. The attributes of Unreal's groom schema are read:
+    `groom_width`, `groom_color`, `groom_root_uv`, `groom_id`, `groom_guide`, `groom_closest_guides`, `groom_guide_weights`.
+    Objects of guides (`groom_guide` = 1) whose `groom_id` are those of other strands mark these as guides.
+    """
+    archive = open_archive(path)
+    to = (Z_UP.T if (up or "y").lower() == "z" else np.eye(3)) * (1.0 if scale is None else scale)
+    read, notes = [], []
+    for curves, above in objects(archive.getTop(), AbcGeom.ICurves):
+        schema = curves.getSchema()
+        if schema.getNumSamples() == 0:
+            notes.append(f"{curves.getFullName()} has no samples; left out")
+            continue
+        read.append(read_object(curves.getFullName(), schema, above, to, notes))
+    read = [r for r in read if r]
+    if not read:
+        raise FormatError("the archive has no curves" + (f" ({'; '.join(notes)})" if notes else ""))
+    return join(read, notes)
+
+
+def read_object(name: str, schema, above: list, to: np.ndarray, notes: list[str]) -> dict | None:
+    """Reads one object of curves."""
+    first = Abc.ISampleSelector()
+    sample = schema.getValue(first)
+    counts = np.asarray(sample.getCurvesNumVertices()).astype(np.int64)
+    if str(sample.getWrap()).endswith("kPeriodic"):
+        notes.append(f"{name} has closed curves; left out")
+        return None
+    matrix = world(above, first)
+    control = place(sample.getPositions(), matrix, to)
+    if counts.sum() != len(control):
+        raise FormatError(f"{name} has {len(control)} points, and its counts name {counts.sum()}")
+    kind = "linear" if str(sample.getType()).endswith("kLinear") else "cubic"
+    basis_name = str(sample.getBasis()).split(".")[-1]
+    basis = BASES.get(basis_name, "bspline")
+    if kind == "cubic" and basis_name == "kNoBasis":
+        kind = "linear"
+    length = float(np.cbrt(abs(np.linalg.det(matrix[:3, :3] @ to))))
+    each = np.array([[varying_count(int(n), kind, basis, "nonperiodic") for n in counts], counts])
+    width, width_scope = attribute(schema, FLOATS, "groom_width")
+    if width is None and schema.getWidthsParam().valid():
+        width, width_scope = parameter_values(schema.getWidthsParam())
+    color, color_scope = attribute(schema, COLORS, "groom_color", "Cd", "displayColor")
+    uv, uv_scope = attribute(schema, PAIRS, "groom_root_uv", "surface_uv_coordinate", "st")
+    closest, _ = attribute(schema, TRIPLES, "groom_closest_guides")
+    weights, _ = attribute(schema, (AbcGeom.IV3fGeomParam, AbcGeom.IFloatGeomParam), "groom_guide_weights")
+    group, _ = attribute(schema, INTEGERS, "groom_group_id")
+    ids, _ = attribute(schema, INTEGERS, "groom_id")
+    guide, _ = attribute(schema, INTEGERS, "groom_guide")
+    n = len(counts)
+    spread = lambda a: None if a is None else (np.repeat(a, n) if len(a) == 1 else a if len(a) == n else None)
+    strands, radii, colors, uvs, start = [], [], [], [], 0
+    for s, count in enumerate(counts):
+        points = on_curve(control[start : start + count], kind, basis, "nonperiodic")
+        start += int(count)
+        strands.append(points)
+        along = None if width is None else expand(width, width_scope, s, each, len(points))
+        radii.append(np.full(len(points), np.nan) if along is None else 0.5 * length * along)
+        along = None if color is None else expand(color, color_scope, s, each, len(points))
+        colors.append(np.full((len(points), 3), np.nan) if along is None else along)
+        root = None if uv is None else expand(uv.reshape(-1, 2), uv_scope, s, each, max(len(points), 1))
+        uvs.append(np.full(2, np.nan) if root is None else root[0])
+    triples = lambda a: None if a is None or a.size != 3 * n else np.asarray(a).reshape(n, 3)
+    return {
+        "name": name,
+        "strands": strands,
+        "radii": radii,
+        "colors": colors,
+        "uvs": uvs,
+        "group": spread(group),
+        "ids": spread(ids),
+        "guide": spread(guide),
+        "closest": triples(closest),
+        "weights": triples(weights),
+        "factors": {name: spread(attribute(schema, FLOATS, name)[0]) for name in FACTORS},
+    }
+
+
+def join(read: list[dict], notes: list[str]) -> Curves:
+    """Joins the objects. Objects that repeat strands as guides only mark them."""
+    marks: set[int] = set()
+    drawn = [r for r in read if r["guide"] is None or not r["guide"].all()]
+    if drawn:
+        known = {int(i) for r in drawn if r["ids"] is not None for i in r["ids"]}
+        for r in read:
+            if not any(r is d for d in drawn):
+                ids = set() if r["ids"] is None else {int(i) for i in r["ids"]}
+                if ids and ids <= known:
+                    marks |= ids
+                else:
+                    drawn.append(r)
+    else:
+        drawn = read
+    strands = [s for r in drawn for s in r["strands"]]
+    points, offsets = as_lengths_and_points(strands)
+    curves = Curves(points, offsets, group_names=[r["name"] for r in drawn], notes=notes)
+    radii = np.concatenate([x for r in drawn for x in r["radii"]])
+    if np.isfinite(radii).any():
+        curves.radii = np.where(np.isfinite(radii), radii, np.nanmedian(radii)).astype(np.float32)
+    colors = np.concatenate([x for r in drawn for x in r["colors"]])
+    if np.isfinite(colors).all():
+        curves.colors = np.clip(colors, 0, 1).astype(np.float32)
+    uvs = np.array([x for r in drawn for x in r["uvs"]])
+    if np.isfinite(uvs).all():
+        curves.root_uvs = uvs.astype(np.float32)
+    groups = np.concatenate(
+        [np.full(len(r["strands"]), k) if r["group"] is None else r["group"] for k, r in enumerate(drawn)]
+    )
+    if 0 <= groups.min() and groups.max() <= 65535:
+        curves.groups = groups.astype(np.uint32)
+    else:
+        notes.append("groom_group_id is not from 0 to 65535; left out")
+    flags = np.concatenate(
+        [
+            np.zeros(len(r["strands"]), bool) if r["guide"] is None else np.asarray(r["guide"]).astype(bool)
+            for r in drawn
+        ]
+    )
+    for name in FACTORS:
+        each = [r["factors"][name] for r in drawn]
+        if any(a is not None for a in each):
+            filled = [np.ones(len(r["strands"])) if a is None else a for r, a in zip(drawn, each)]
+            curves.factors[name] = np.maximum(np.concatenate(filled), 0).astype(np.float32)
+    if marks:
+        ids = np.concatenate([np.full(len(r["strands"]), -1) if r["ids"] is None else r["ids"] for r in drawn])
+        flags |= np.isin(ids, sorted(marks))
+    first = np.cumsum([0] + [len(r["strands"]) for r in drawn])
+    if all(r["closest"] is not None and r["weights"] is not None for r in drawn):
+        closest = np.concatenate([r["closest"] + int(first[k]) for k, r in enumerate(drawn)])
+        weights = np.concatenate([r["weights"] for r in drawn]).astype(np.float64)
+        if closest.min() >= 0 and closest.max() < len(strands):
+            weights /= np.maximum(weights.sum(axis=1, keepdims=True), 1e-12)
+            curves.guides, curves.guide_weights = closest.astype(np.uint32), weights.astype(np.float32)
+        else:
+            notes.append("groom_closest_guides names strands that do not exist; left out")
+    if curves.guides is None and flags.any():
+        found = guides_from_flags(flags, points[offsets[:-1]])
+        if found:
+            curves.guides, curves.guide_weights = found
+    return curves
+
+
+def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> MovingMesh:
+    """Reads all polygon meshes of an archive as one body, with the motion of their vertices."""
+    archive = open_archive(path)
+    to = (Z_UP.T if (up or "y").lower() == "z" else np.eye(3)) * (1.0 if scale is None else scale)
+    meshes = list(objects(archive.getTop(), AbcGeom.IPolyMesh))
+    meshes = [(m, above) for m, above in meshes if m.getSchema().getNumSamples() > 0]
+    if not meshes:
+        raise FormatError("the archive has no polygon meshes")
+    times: set[float] = set()
+    for mesh, above in meshes:
+        for schema in [mesh.getSchema(), *above]:
+            sampling, count = schema.getTimeSampling(), schema.getNumSamples()
+            if count > 1:
+                times.update(round(sampling.getSampleTime(k), 9) for k in range(count))
+    steps = np.diff(sorted(times)) if len(times) > 1 else np.zeros(0)
+    step = float(np.median(steps)) if len(steps) else 1 / 24
+    at = np.arange(min(times), max(times) + 0.5 * step, step) if len(times) > 1 else np.zeros(1)
+    triangles, parts, total = [], [], 0
+    for mesh, _ in meshes:
+        schema = mesh.getSchema()
+        if "Heterogen" in str(schema.getTopologyVariance()):
+            raise FormatError(f"the topology of {mesh.getFullName()} changes over time; export a mesh of constant topology")
+        sample = schema.getValue(Abc.ISampleSelector())
+        counts = np.asarray(sample.getFaceCounts()).astype(np.int64)
+        indices = np.asarray(sample.getFaceIndices()).astype(np.int64)
+        count = len(sample.getPositions())
+        if counts.sum() != len(indices) or (len(indices) and not 0 <= indices.min() <= indices.max() < count):
+            raise FormatError(f"the faces of {mesh.getFullName()} name vertices that do not exist")
+        # Alembic's faces are clockwise seen from outside.
+        own = triangulate(counts, indices)[:, ::-1]
+        triangles.append(own + total)
+        parts.append((mesh.getFullName(), len(own)))
+        total += count
+    if len(at) * total > MAX_POSITIONS:
+        raise FormatError(f"the motion holds more than {MAX_POSITIONS} positions; shorten it")
+    frames = np.empty((len(at), total, 3), np.float32)
+    for f, t in enumerate(at):
+        selector, first = Abc.ISampleSelector(float(t)), 0
+        for mesh, above in meshes:
+            points = place(mesh.getSchema().getValue(selector).getPositions(), world(above, selector), to)
+            frames[f, first : first + len(points)] = points
+            first += len(points)
+    moves = len(at) > 1 and not np.allclose(frames, frames[:1], atol=1e-7)
+    rate = 1 / step
+    notes = [f"{len(at)} frames at {rate:g} Hz move the body's vertices"] if moves else []
+    joined = np.concatenate(triangles).astype(np.uint32)
+    return MovingMesh(frames[0].copy(), joined, None, parts, frames if moves else None, rate, notes)

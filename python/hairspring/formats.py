@@ -1,0 +1,80 @@
+"""What readers of formats return, in meters, Y up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass
+class Curves:
+    """Strands of a file; arrays as in `Groom`. Optional arrays are None."""
+
+    points: np.ndarray
+    offsets: np.ndarray
+    radii: np.ndarray | None = None
+    groups: np.ndarray | None = None
+    group_names: list[str] = field(default_factory=list)
+    root_uvs: np.ndarray | None = None
+    colors: np.ndarray | None = None
+    guides: np.ndarray | None = None
+    guide_weights: np.ndarray | None = None
+    factors: dict[str, np.ndarray] = field(default_factory=dict)
+    """Factors of the material for each strand: `stiffness`, `damping`, `drag`; [strands], float32."""
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass
+class MovingMesh:
+    """A triangle mesh and, if it moves, the positions of its vertices in each frame."""
+
+    vertices: np.ndarray
+    """[vertices, 3], float32: the first frame [m]."""
+    triangles: np.ndarray
+    """[triangles, 3], uint32."""
+    uvs: np.ndarray | None = None
+    """[vertices, 2], float32."""
+    parts: list[tuple[str, int]] = field(default_factory=list)
+    """Name and number of triangles of each part, in order."""
+    frames: np.ndarray | None = None
+    """[frames, vertices, 3], float32 [m]; None if nothing moves."""
+    rate: float = 24.0
+    """Frames per second of `frames` [Hz]."""
+    notes: list[str] = field(default_factory=list)
+
+
+class FormatError(Exception):
+    """A file that cannot be read or written: one sentence without the name of the file."""
+
+
+FACTORS = ("stiffness", "damping", "drag")
+"""Names of the attributes that are factors of the material for each strand."""
+
+MAX_POSITIONS = 150_000_000
+"""Largest number of vertex positions of a motion: 1,500 frames of 100,000 vertices."""
+
+
+def as_lengths_and_points(strands: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Joins strands of shape [n, 3] to points and offsets."""
+    offsets = np.zeros(len(strands) + 1, np.uint32)
+    np.cumsum([len(s) for s in strands], out=offsets[1:])
+    points = np.concatenate(strands) if strands else np.zeros((0, 3), np.float32)
+    return np.ascontiguousarray(points, np.float32), offsets
+
+
+def guides_from_flags(flags: np.ndarray, roots: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Guides and weights of strands, if only `flags` says which of them are guides: the nearest guide by its root."""
+    guides = np.flatnonzero(flags)
+    if len(guides) == 0 or len(guides) == len(flags):
+        return None
+    nearest = np.empty(len(flags), np.uint32)
+    # In blocks, so that memory stays bounded.
+    for first in range(0, len(flags), 4096):
+        block = roots[first : first + 4096]
+        distance = ((block[:, None, :] - roots[None, guides, :]) ** 2).sum(axis=2)
+        nearest[first : first + 4096] = guides[distance.argmin(axis=1)]
+    nearest[guides] = guides
+    weights = np.zeros((len(flags), 3), np.float32)
+    weights[:, 0] = 1.0
+    return np.repeat(nearest[:, None], 3, axis=1), weights

@@ -1,0 +1,79 @@
+"""Points on curves, values along them (OpenUSD, "UsdGeomBasisCurves"), and triangles of polygons."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def with_phantoms(points: np.ndarray, basis: str) -> np.ndarray:
+    """Adds the points that a pinned curve has in addition, so that it reaches its first and last point."""
+    if basis == "catmullRom" or basis == "bspline":
+        first, last = 2 * points[:1] - points[1:2], 2 * points[-1:] - points[-2:-1]
+        return np.concatenate([first, points, last])
+    return points
+
+
+def on_curve(points: np.ndarray, kind: str, basis: str, wrap: str) -> np.ndarray:
+    """Returns points on a curve with the control points `points` [n, 3], from its start to its end.
+
+    A linear curve, and a pinned Catmull-Rom curve, pass through their control points. Others are evaluated: B-splines and
+    Catmull-Rom curves at the ends of their segments, Bézier curves also at the thirds between.
+    """
+    if kind == "linear" or len(points) < 3:
+        return points
+    if basis == "bezier":
+        count = (len(points) - 1) // 3
+        out = [points[:1]]
+        for segment in range(count):
+            p = points[3 * segment : 3 * segment + 4]
+            for t in (1 / 3, 2 / 3, 1.0):
+                s = 1 - t
+                out.append((s**3 * p[0] + 3 * s * s * t * p[1] + 3 * s * t * t * p[2] + t**3 * p[3])[None])
+        return np.concatenate(out)
+    control = with_phantoms(points, basis) if wrap == "pinned" else points
+    if basis == "bspline":
+        return (control[:-2] + 4 * control[1:-1] + control[2:]) / 6
+    return control[1:-1]
+
+
+def expand(values: np.ndarray, interpolation: str, curve: int, counts: np.ndarray, points: int) -> np.ndarray | None:
+    """Returns the values of one curve at its `points` points, from the values of the prim.
+
+    `counts` is the number of values that a varying and a vertex primvar have for each curve: [2, curves].
+    """
+    if len(values) == 0:
+        return None
+    if interpolation == "constant":
+        return np.repeat(values[:1], points, axis=0)
+    if interpolation == "uniform":
+        return np.repeat(values[curve : curve + 1], points, axis=0)
+    each = counts[0 if interpolation == "varying" else 1]
+    first = int(each[:curve].sum())
+    own = values[first : first + int(each[curve])]
+    if len(own) == points:
+        return own
+    if len(own) == 0:
+        return None
+    # Values at equal parameters along the curve, interpolated at the points.
+    at, to = np.linspace(0, 1, len(own)), np.linspace(0, 1, points)
+    flat = own.reshape(len(own), -1)
+    columns = [np.interp(to, at, flat[:, k]) for k in range(flat.shape[1])]
+    return np.stack(columns, axis=1).reshape(points, *own.shape[1:])
+
+
+def varying_count(control: int, kind: str, basis: str, wrap: str) -> int:
+    """Number of varying values of a curve with `control` control points: the ends of its segments."""
+    if kind == "linear":
+        return control
+    if basis == "bezier":
+        return (control - 4) // 3 + 2
+    return control if wrap == "pinned" else control - 2
+
+
+def triangulate(counts: np.ndarray, indices: np.ndarray) -> np.ndarray:
+    """Triangles of polygons, as fans: [triangles, 3]."""
+    first = np.concatenate([[0], np.cumsum(counts)[:-1]])
+    fans = np.maximum(counts - 2, 0)
+    start = np.repeat(first, fans)
+    step = np.arange(fans.sum()) - np.repeat(np.cumsum(fans) - fans, fans)
+    return np.stack([indices[start], indices[start + step + 1], indices[start + step + 2]], axis=1)

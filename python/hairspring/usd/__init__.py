@@ -1,0 +1,16 @@
+"""Reads and writes USD by `usd-core` (`pip install hairspring[usd]`).
+
+| function | |
+| --- | --- |
+| `read_curves` | BasisCurves as a groom |
+| `read_mesh` | meshes, skinned or not, as a body with its motion |
+| `read_cameras` | cameras over time |
+| `CurvesWriter` | strands that move, as time-sampled BasisCurves |
+
+All content is in meters, Y up; the unit and the axis of a stage are converted.
+"""
+
+from .read import read_cameras, read_curves, read_mesh
+from .write import CurvesWriter
+
+__all__ = ["CurvesWriter", "read_cameras", "read_curves", "read_mesh"]

@@ -1,0 +1,132 @@
+"""Alembic, checked with alembic3d itself."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("alembic3d")
+from alembic3d import Abc, AbcGeom
+from conftest import shot
+
+import hairspring as hs
+from hairspring import alembic
+from hairspring.description import Description, MovingGroom
+
+
+def test_a_bake_is_a_groom_cache_with_unreals_names(tmp_path, program):
+    scene, path = shot(tmp_path), tmp_path / "hair.abc"
+    code, _, error = program("bake", scene, "-o", tmp_path / "hair.####.hair", "--frames", "1-3", "--fps", "24")
+    assert code == 0, error
+    code, _, error = program("bake", scene, "-o", path, "--frames", "1-3", "--fps", "24")
+    assert code == 0, error
+    top = Abc.IArchive(str(path)).getTop()
+    names = [child.getName() for child in top.children]
+    assert names[:2] == ["Head_hair", "Head_hair_guides"]
+    schema = AbcGeom.ICurves(top, "Head_hair").getSchema()
+    assert schema.getNumSamples() == 3
+    sampling = schema.getTimeSampling()
+    np.testing.assert_allclose([sampling.getSampleTime(k) for k in range(3)], [1 / 24, 2 / 24, 3 / 24])
+    for k in range(3):
+        # A selector of a float selects by time.
+        sample = schema.getValue(Abc.ISampleSelector(sampling.getSampleTime(k)))
+        points = np.array(sample.getPositions())
+        np.testing.assert_array_equal(points, hs.Groom.read(tmp_path / f"hair.000{k + 1}.hair", up="y").points[: len(points)])
+    assert len(np.array(sample.getVelocities())) == len(points)
+    found = {h.getName(): h.getMetaData().serialize() for h in schema.getArbGeomParams().propertyheaders}
+    assert {"groom_version_major", "groom_version_minor", "groom_id", "groom_width"} <= set(found)
+    assert "geoScope=con" in found["groom_version_major"] and "geoScope=uni" in found["groom_id"]
+    guides = AbcGeom.ICurves(top, "Head_hair_guides").getSchema()
+    assert "groom_guide" in {h.getName() for h in guides.getArbGeomParams().propertyheaders}
+    assert len(np.asarray(guides.getValue(Abc.ISampleSelector()).getCurvesNumVertices())) == 30
+
+
+def random_groom(seed=1):
+    rng = np.random.default_rng(seed)
+    counts = rng.integers(4, 9, 50)
+    offsets = np.concatenate([[0], np.cumsum(counts)]).astype(np.uint32)
+    points = (0.1 * rng.random((offsets[-1], 3))).astype(np.float32)
+    guide = np.arange(50) % 5 == 0
+    return MovingGroom(
+        "my hair",
+        points,
+        offsets,
+        np.linspace(30e-6, 40e-6, len(points)).astype(np.float32),
+        guide,
+        groups=np.arange(50) // 25,
+        root_uvs=rng.random((50, 2)).astype(np.float32),
+        colors=rng.random((len(points), 3)).astype(np.float32),
+        guides=np.tile(np.arange(50)[:, None] // 5 * 5, (1, 3)),
+        guide_weights=np.tile(np.float32([1, 0, 0]), (50, 1)),
+    )
+
+
+@pytest.mark.parametrize("suffix", ["abc", "usdc", "usda"])
+def test_every_attribute_survives_a_round_trip(tmp_path, suffix):
+    if suffix != "abc":
+        pytest.importorskip("pxr")
+        from hairspring import usd as module
+    else:
+        module = alembic
+    groom = random_groom()
+    path = tmp_path / f"a.{suffix}"
+    writer = module.CurvesWriter(path, Description(24, 1, 1, [groom], "test"))
+    writer.frame(1, groom.points, np.zeros_like(groom.points))
+    writer.finish()
+    read = hs.Groom.read(path, scale=1.0)
+    np.testing.assert_allclose(read.points, groom.points, atol=1e-7)
+    assert (read.offsets == groom.offsets).all() and (read.groups == groom.groups).all()
+    np.testing.assert_allclose(read.radii, groom.radii, rtol=1e-5)
+    np.testing.assert_allclose(read.root_uvs, groom.root_uvs, atol=1e-6)
+    np.testing.assert_allclose(read.colors, groom.colors, atol=1e-6)
+    guides, weights = read.guides
+    assert (guides == groom.guides).all() and (weights == groom.guide_weights).all()
+
+
+def test_a_file_without_a_unit_is_guessed_and_said(tmp_path):
+    groom = random_groom()
+    groom.points = groom.points * 300
+    groom.radii = groom.radii * 100
+    writer = alembic.CurvesWriter(tmp_path / "cm.abc", Description(24, 1, 1, [groom]))
+    writer.frame(1, groom.points, np.zeros_like(groom.points))
+    writer.finish()
+    read = hs.Groom.read(tmp_path / "cm.abc")
+    assert any("centimeters" in note for note in read.notes)
+    assert np.ptp(read.points, axis=0).max() < 0.5
+
+
+def test_a_mesh_that_moves_is_a_vertex_cache(tmp_path, program):
+    import imath
+
+    path = tmp_path / "body.abc"
+    archive = Abc.OArchive(str(path))
+    from alembic3d import AbcCoreAbstract as core
+
+    sampling = Abc.Argument(archive.addTimeSampling(core.TimeSampling(1 / 24, 0.0)))
+    mesh = AbcGeom.OPolyMesh(archive.getTop(), "ball", sampling)
+    grid = np.array([(x, y, z) for x in (-0.1, 0.1) for y in (0, 0.2) for z in (-0.1, 0.1)], np.float32)
+    # Clockwise seen from outside, as Alembic has it.
+    faces = [[2, 3, 1, 0], [5, 7, 6, 4], [1, 5, 4, 0], [6, 7, 3, 2], [4, 6, 2, 0], [3, 7, 5, 1]]
+    for k in range(12):
+        moved = grid + np.float32([0.01 * k, 0, 0])
+        sample = AbcGeom.OPolyMeshSchemaSample(
+            imath.V3fArrayFromBuffer(moved),
+            imath.IntArrayFromBuffer(np.int32(faces).reshape(-1)),
+            imath.IntArrayFromBuffer(np.full(6, 4, np.int32)),
+        )
+        mesh.getSchema().set(sample)
+    del mesh, sampling, sample, archive
+    read = alembic.read_mesh(path)
+    assert read.frames.shape == (12, 8, 3) and read.rate == pytest.approx(24)
+    # Faces point outward, as everywhere else.
+    a, b, c = (read.vertices[read.triangles[:, k]] for k in range(3))
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+    assert volume == pytest.approx(0.2 * 0.2 * 0.2, rel=1e-4)
+    points = np.float32([[0, 0.2 + 0.01 * i, 0] for i in range(10)])
+    hs.Groom(points, [0, 10]).write(tmp_path / "hair.data")
+    (tmp_path / "shot.toml").write_text(
+        '[body]\nfile = "body.abc"\nscale = 1.0\n[[groom]]\nfile = "hair.data"\nscale = 1.0\n'
+    )
+    code, _, error = program("bake", tmp_path / "shot.toml", "-o", tmp_path / "out.####.hair", "--fps", "24")
+    assert code == 0, error
+    last = hs.Groom.read(tmp_path / "out.0012.hair", up="y").points
+    np.testing.assert_allclose(last[0], [0.11, 0.2, 0], atol=1e-5)
+    assert not (tmp_path / "out.0013.hair").exists()

@@ -1,0 +1,33 @@
+"""The examples of the documentation run."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def examples():
+    for page in ("README.md", "docs/python.md"):
+        for k, code in enumerate(re.findall(r"```python\n(.*?)```", (ROOT / page).read_text(), re.S)):
+            yield pytest.param(code, id=f"{page}-{k + 1}")
+
+
+@pytest.mark.parametrize("code", examples())
+def test_examples_run(code, capsys):
+    exec(compile(code, "example", "exec"), {})
+
+
+def test_type_stubs_match_the_module():
+    pytest.importorskip("mypy")
+    import subprocess
+    import sys
+
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy.stubtest", "hairspring._native", "--ignore-missing-stub", "--concise"],
+        capture_output=True,
+        text=True,
+        cwd=ROOT / "python" / "tests",
+    )
+    assert checked.returncode == 0, checked.stdout + checked.stderr
