@@ -211,7 +211,13 @@ mod tests {
 
     fn scene() -> (Document, StageSnapshot, Lens) {
         let document = Document::new("scene.toml".as_ref(), SCENE.into()).unwrap();
-        let still = Still { grooms: Vec::new(), body: None, counts: [0; 4], instruction_set: String::new() };
+        let still = Still {
+            grooms: Vec::new(),
+            body: None,
+            counts: [0; 4],
+            instruction_set: String::new(),
+            subject: None,
+        };
         let camera =
             Camera { position: Vec3::new(0.0, 1.5, 2.0), target: Vec3::new(0.0, 1.5, 0.0), fov: 30.0 };
         (document, StageSnapshot::new(Arc::new(still)), Lens::new(&camera, 1.5))

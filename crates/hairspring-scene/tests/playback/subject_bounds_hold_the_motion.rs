@@ -30,7 +30,7 @@ fn outside(stage: &mut Stage, frames: usize) -> f64 {
 #[test]
 fn the_box_holds_hair_that_turns_and_shakes() {
     for style in Style::ALL {
-        let options = BuiltinOptions { strands: 600, guides: Guides::All, ..BuiltinOptions::new(style) };
+        let options = BuiltinOptions { strands: 250, guides: Guides::All, ..BuiltinOptions::new(style) };
         let mut stage = Stage::new(scene(&options)).unwrap();
         let share = outside(&mut stage, 150);
         assert!(share < 2e-3, "{}: {share} of all points are outside", style.name());
