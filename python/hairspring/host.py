@@ -38,7 +38,7 @@ def read_groom(path: str, scale: float | None, up: str | None):
     read = _module(file).read_curves(file, scale, up)
     names = ("points", "offsets", "radii", "groups", "root_uvs", "colors", "guides", "guide_weights")
     arrays = {name: getattr(read, name) for name in names if getattr(read, name) is not None}
-    arrays["factors"] = read.factors
+    arrays |= read.factors
     return arrays, read.group_names, _stated(file, scale), read.notes
 
 

@@ -144,7 +144,7 @@ def run_variant(task: dict) -> dict:
 
 def tasks(options: argparse.Namespace, found: list[Variant]) -> list[dict]:
     """What `run_variant` needs of each variant."""
-    still = ["--frame", options.frames.split("-")[-1]] if options.frames else []
+    still = ["--frames", options.frames.split("-")[-1] if options.frames else "60"]
     out = []
     for variant in found:
         folder = (options.output / variant.name).resolve()

@@ -44,7 +44,6 @@ def test_progress_is_json_on_request(tmp_path, program):
 
 
 def test_a_wedge_simulates_all_combinations_and_keeps_what_is_complete(tmp_path, program):
-    (tmp_path / "look.txt").write_text("")
     scene = shot(tmp_path)
     options = ["--set", "solver.substeps=2,4", "--set", "wind.velocity=[0,0,0];[4,0,0]", "--frames", "1-3", "--size", "64x64"]
     out = tmp_path / "wedge"

@@ -72,14 +72,6 @@ struct Arrays<'py> {
     #[pyo3(default)]
     guide_weights: Option<Floats<'py>>,
     #[pyo3(default)]
-    factors: Factors<'py>,
-}
-
-/// Factors of a material for each strand.
-#[derive(Default, FromPyObject)]
-#[pyo3(from_item_all)]
-struct Factors<'py> {
-    #[pyo3(default)]
     stiffness: Option<Floats<'py>>,
     #[pyo3(default)]
     damping: Option<Floats<'py>>,
@@ -87,8 +79,8 @@ struct Factors<'py> {
     drag: Option<Floats<'py>>,
 }
 
-impl Factors<'_> {
-    /// The factors of each strand; empty if all are 1.
+impl Arrays<'_> {
+    /// The factors of the material for each strand; empty if all are 1.
     fn scales(&self, strands: usize) -> PyResult<Vec<StrandScale>> {
         let given = [("stiffness", &self.stiffness), ("damping", &self.damping), ("drag", &self.drag)];
         let mut scales = Vec::new();
@@ -172,7 +164,7 @@ impl Arrays<'_> {
             root_uvs: root_uvs.to_vec(),
             colors: colors.to_vec(),
             guides,
-            scales: self.factors.scales(strands)?,
+            scales: self.scales(strands)?,
             ..groom::Groom::default()
         })
     }
@@ -204,8 +196,19 @@ impl Groom {
         damping: Option<Floats>,
         drag: Option<Floats>,
     ) -> PyResult<Self> {
-        let factors = Factors { stiffness, damping, drag };
-        let arrays = Arrays { points, offsets, radii, groups, root_uvs, colors, guides, guide_weights, factors };
+        let arrays = Arrays {
+            points,
+            offsets,
+            radii,
+            groups,
+            root_uvs,
+            colors,
+            guides,
+            guide_weights,
+            stiffness,
+            damping,
+            drag,
+        };
         arrays.groom().map(Self::of)
     }
 

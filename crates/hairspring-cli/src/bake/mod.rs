@@ -241,6 +241,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             && checkpoints.is_due(step - 1)
             && step - 1 > begin
         {
+            // Otherwise frames before the checkpoint that are not listed yet would be made again from an earlier one.
+            manifest.as_mut().map_or(Ok(()), Manifest::write)?;
             checkpoints.write(step - 1, stage)?;
         }
         progress.step(|| {
