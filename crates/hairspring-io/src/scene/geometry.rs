@@ -24,8 +24,8 @@ pub(super) struct Asked<'a> {
     props: &'a [PropFile],
     collide_body: bool,
     settle: f32,
-    /// What each collider does with hair inside it before the scene begins.
-    initial: Vec<InitialContact>,
+    /// The colliders that push hair out before the scene begins.
+    pushing: Vec<usize>,
     grooms: Vec<GroomGeometry<'a>>,
     /// Radii that the materials of each groom set [m].
     radii: Vec<Vec<Option<f32>>>,
@@ -52,7 +52,9 @@ pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<
         props: &file.prop,
         collide_body: file.solver.collide_body,
         settle: file.solver.preroll,
-        initial: file.collider.iter().map(|collider| collider.initial).collect(),
+        pushing: (0..file.collider.len())
+            .filter(|k| file.collider[*k].initial == InitialContact::Push)
+            .collect(),
         grooms: file.groom.iter().map(|groom| groom.geometry()).collect(),
         radii,
     })

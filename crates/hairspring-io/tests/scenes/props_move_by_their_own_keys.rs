@@ -145,7 +145,7 @@ fn a_mesh_without_joints_is_placed_by_its_transform() {
         format!(
             "[[prop]]\nname = \"lid\"\nmesh = {{ file = \"head.obj\", parts = [\"neck\"], scale = 1{transform} }}\n\
                  [[sheet]]\nfile = \"head.obj\"\nparts = [\"neck\"]\nscale = 1\njoint = \"lid\"{}\n",
-            transform.replace(", ", "\n")
+            transform.replace(", transform", "\ntransform")
         )
     };
     let body = "[body]\nfile = \"head.obj\"\nscale = 1\nparts = [\"scalp\"]\n";

@@ -157,6 +157,10 @@ fn same_geometry_ignores_settings_only() {
         ("[solver]\n", "[[groom]]\nfile = \"hair.data\"\n"),
         ("[solver]\n", "[clip]\nkeys = [{ time = 0 }]\n"),
         ("[solver]\n", "[[sheet]]\nfile = \"cape.obj\"\n"),
+        (
+            "[solver]\n",
+            "[[collider]]\ninitial = \"push\"\nshape.sphere = { center = [0, 0, 0], radius = 1 }\n",
+        ),
         ("[solver]\n", "[solver]\nsubstep = 3\n"),
     ] {
         assert!(

@@ -192,7 +192,8 @@ fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
         let worst = &mut played.worst;
         worst.stretch_mean = worst.stretch_mean.max(measure.stretch_mean);
         worst.stretch_max = worst.stretch_max.max(measure.stretch_max);
-        worst.inside_points = worst.inside_points.max(measure.inside_points);
+        let came_inside = measure.inside_points - measure.started_inside_points;
+        worst.inside_points = worst.inside_points.max(came_inside);
         worst.max_depth = worst.max_depth.max(measure.max_depth);
         worst.inside_segments = worst.inside_segments.max(measure.inside_segments);
         worst.deep_segments = worst.deep_segments.max(measure.deep_segments);
