@@ -9,7 +9,7 @@ const BROW_HAIRS: u32 = 420;
 /// Number of hairs on one upper lid; a real one has 90 to 150.
 const LASHES: u32 = 110;
 /// Number of fine hairs on each half of the hairline.
-const FINE_HAIRS: u32 = 560;
+const FINE_HAIRS: u32 = 320;
 /// Width of the band below the hairline in which they grow [m].
 const FINE_BAND: f32 = 0.009;
 /// Angle around the head at which they end, in front of the ear [rad].

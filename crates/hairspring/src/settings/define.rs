@@ -359,7 +359,7 @@ macro_rules! define_settings {
     (@text $unit:literal {vector}) => { "three finite numbers" };
     (@text $unit:literal {vector above 0}) => { "three numbers above 0" };
     (@text $unit:literal {direction}) => { "a vector with a length above 0" };
-    (@text $unit:literal {color}) => { "three numbers from 0 to 1" };
+    (@text $unit:literal {color}) => { "three numbers from 0 to 1, or a text such as \"#a0522d\"" };
     (@text $unit:literal {above $min:literal at most $max:literal}) => {
         concat!("above ", stringify!($min), ", at most ", stringify!($max))
     };
