@@ -114,7 +114,14 @@ fn monkey(minutes: &str) -> Result<(), String> {
 fn package() -> Result<(), String> {
     // Private: the developer commands, the helpers of the tests, the scalar build of the library's files, and the
     // program that may link it.
-    let private = ["xtask", "hairspring-test", "hairspring-scalar", "hairspring-one-lane", "hairspring-cli", "hairspring-python"];
+    let private = [
+        "xtask",
+        "hairspring-test",
+        "hairspring-scalar",
+        "hairspring-one-lane",
+        "hairspring-cli",
+        "hairspring-python",
+    ];
     let exclude = private.iter().flat_map(|name| ["--exclude", name]);
     let package = ["package", "--quiet", "--workspace", "--no-verify", "--allow-dirty"];
     run::cargo(&package.into_iter().chain(exclude).collect::<Vec<_>>(), &[])

@@ -18,7 +18,9 @@ pub type Counts = [u64; 3];
 /// Installs the package with its extras, and runs its tests. Returns the counts; all 0 without Python.
 pub fn test() -> Result<Counts, String> {
     let Some(python) = environment()? else {
-        println!("skipped the tests of the Python package: python3, 3.11 or later, with the module venv was not found");
+        println!(
+            "skipped the tests of the Python package: python3, 3.11 or later, with the module venv was not found"
+        );
         return Ok([0, 0, 1]);
     };
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
@@ -59,7 +61,8 @@ fn environment() -> Result<Option<PathBuf>, String> {
 /// Reads the summary of pytest: `1 failed, 20 passed, 2 skipped in 3.50s`.
 fn counts(text: &str) -> Counts {
     let mut sum = [0; 3];
-    let Some(line) = text.lines().rev().find(|l| l.contains(" in ") && l.contains(|c: char| c.is_ascii_digit()))
+    let Some(line) =
+        text.lines().rev().find(|l| l.contains(" in ") && l.contains(|c: char| c.is_ascii_digit()))
     else {
         return sum;
     };

@@ -130,7 +130,10 @@ impl Progress {
             })),
             (_, ProgressForm::Openjd) => {
                 // The result is on standard output too; a closed pipe is reported at the end.
-                say(format_args!("openjd_progress: {:.2}", 100.0 * f64::from(done) / f64::from(total.max(1))));
+                say(format_args!(
+                    "openjd_progress: {:.2}",
+                    100.0 * f64::from(done) / f64::from(total.max(1))
+                ));
                 say(format_args!("openjd_status: {what}, {done} of {total} {unit}"));
             }
             (Some(bar), _) => bar.inc(1),

@@ -13,7 +13,8 @@ use hairspring::{
     groom::{Groom, Repairs},
 };
 use hairspring_io::{
-    Format, Motion, ReadOptions, SkinDistance, pc2, read_body, read_bones, read_groom, read_motion, read_scene,
+    Format, Motion, ReadOptions, SkinDistance, pc2, read_body, read_bones, read_groom, read_motion,
+    read_scene,
 };
 use hairspring_scene::{Guides, Scene};
 use serde_json::{Value, json};
@@ -92,7 +93,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         }
         Format::Usd | Format::Alembic => external(path, &units, console)?,
         Format::Pc2 => {
-            let data = std::fs::read(path).map_err(|e| Fault::Unreadable(format!("{}: {e}", path.display())))?;
+            let data =
+                std::fs::read(path).map_err(|e| Fault::Unreadable(format!("{}: {e}", path.display())))?;
             let cache = pc2::parse(&data).map_err(|p| wrong(p.in_file(path)))?;
             json!({
                 "samples": cache.samples.len(),

@@ -71,7 +71,9 @@ pub fn bake_scene(arguments: impl IntoIterator<Item = OsString>) -> Result<hairs
     let cli = Cli::try_parse_from(arguments).map_err(|refused| refused.to_string())?;
     match cli.command {
         // What the reader notes, the bake itself has printed.
-        Some(Command::Bake(options)) => options.scene(Console::new(true, false, args::ProgressForm::Text)).map_err(|fault| fault.to_string()),
+        Some(Command::Bake(options)) => options
+            .scene(Console::new(true, false, args::ProgressForm::Text))
+            .map_err(|fault| fault.to_string()),
         _ => Err("the command is not `bake`".into()),
     }
 }

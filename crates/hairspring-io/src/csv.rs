@@ -41,7 +41,8 @@ struct Columns {
 
 pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let text = as_text(data);
-    let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim())).filter(|(_, line)| !line.is_empty());
+    let mut lines =
+        text.lines().enumerate().map(|(k, line)| (k + 1, line.trim())).filter(|(_, line)| !line.is_empty());
     let (_, header) = lines.next().ok_or_else(|| Problem::whole("the table is empty"))?;
     let separator = [',', ';', '\t'].into_iter().find(|s| header.contains(*s)).unwrap_or(',');
     let mut notes = Vec::new();
@@ -52,12 +53,15 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         let wrong = |text: String| Problem::new(Place::Line(number), text);
         let cells: Vec<&str> = line.split(separator).map(str::trim).collect();
         if cells.len() != columns.count {
-            let text = format!("the line has {} columns, and the first line names {}", cells.len(), columns.count);
+            let text =
+                format!("the line has {} columns, and the first line names {}", cells.len(), columns.count);
             return Err(wrong(text));
         }
         let cell = |k: usize| {
             let number = cells[k].parse::<f32>().ok();
-            number.ok_or_else(|| wrong(format!("expected a number in column {}, but found {:?}", k + 1, cells[k])))
+            number.ok_or_else(|| {
+                wrong(format!("expected a number in column {}, but found {:?}", k + 1, cells[k]))
+            })
         };
         let vector = |k: [usize; 3]| Ok::<_, Problem>(Vec3::new(cell(k[0])?, cell(k[1])?, cell(k[2])?));
         let strand = cells[columns.strand];
@@ -86,7 +90,8 @@ fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Col
     let find = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&name.as_str()));
     let required = |wanted: &[&str]| {
         find(wanted).ok_or_else(|| {
-            let text = format!("the first line names no column `{}`; it must name strand, x, y and z", wanted[0]);
+            let text =
+                format!("the first line names no column `{}`; it must name strand, x, y and z", wanted[0]);
             Problem::new(Place::Line(1), text)
         })
     };
@@ -118,7 +123,9 @@ mod tests {
 
     #[test]
     fn tables_are_read_with_any_separator_and_order() {
-        let read = read(b"\xEF\xBB\xBFid;z;y;x;width;age\n a;1;2;3;0.0001;9\na;1;2;4;0.0002;9\nb;0;0;0;0.0001;9\n").unwrap();
+        let read =
+            read(b"\xEF\xBB\xBFid;z;y;x;width;age\n a;1;2;3;0.0001;9\na;1;2;4;0.0002;9\nb;0;0;0;0.0001;9\n")
+                .unwrap();
         assert_eq!(read.groom.offsets, [0, 2, 3]);
         assert_eq!(read.groom.points[0], Vec3::new(3.0, 2.0, 1.0));
         assert_eq!(read.radii.unwrap(), [0.00005, 0.0001, 0.00005]);

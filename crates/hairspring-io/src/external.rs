@@ -23,13 +23,21 @@ pub trait ExternalFormats: Send + Sync {
     ///
     /// # Errors
     /// What is wrong, and what to do.
-    fn read_groom(&self, path: &Path, options: &ReadOptions) -> std::result::Result<ExternalFile<Groom>, String>;
+    fn read_groom(
+        &self,
+        path: &Path,
+        options: &ReadOptions,
+    ) -> std::result::Result<ExternalFile<Groom>, String>;
 
     /// Reads the meshes of a file as one body.
     ///
     /// # Errors
     /// What is wrong, and what to do.
-    fn read_body(&self, path: &Path, options: &ReadOptions) -> std::result::Result<ExternalFile<Character>, String>;
+    fn read_body(
+        &self,
+        path: &Path,
+        options: &ReadOptions,
+    ) -> std::result::Result<ExternalFile<Character>, String>;
 
     /// Begins to write strands that move to one file.
     ///
@@ -109,7 +117,8 @@ fn with_formats<T>(
 pub(crate) fn read_groom(path: &Path, options: &ReadOptions) -> Result<Read> {
     // Reports a missing file as for other formats, and records the content for a manifest.
     load::bytes_of(path)?;
-    let ExternalFile { value, unit_known, notes } = with_formats(path, |formats| formats.read_groom(path, options))?;
+    let ExternalFile { value, unit_known, notes } =
+        with_formats(path, |formats| formats.read_groom(path, options))?;
     let mut groom = value;
     let radii = Some(std::mem::take(&mut groom.radii)).filter(|radii| !radii.is_empty());
     Ok(Read { groom, radii, true_radii: false, units: units(unit_known), notes })
@@ -118,7 +127,8 @@ pub(crate) fn read_groom(path: &Path, options: &ReadOptions) -> Result<Read> {
 /// Reads a body, with its unit still to be guessed if it is not known.
 pub(crate) fn read_body(path: &Path, options: &ReadOptions) -> Result<(Character, FileUnits, Vec<String>)> {
     load::bytes_of(path)?;
-    let ExternalFile { value, unit_known, notes } = with_formats(path, |formats| formats.read_body(path, options))?;
+    let ExternalFile { value, unit_known, notes } =
+        with_formats(path, |formats| formats.read_body(path, options))?;
     Ok((value, units(unit_known), notes))
 }
 
@@ -146,10 +156,9 @@ pub fn write_cache(path: &Path, description: &CacheDescription) -> Result<Box<dy
     match Format::of(path) {
         Some(Format::Pc2) => {
             let writer = crate::pc2::Writer::create(path, description);
-            writer.map(|w| Box::new(w) as Box<dyn CacheWriter>).map_err(|reason| Error::Unwritable {
-                path: path.to_owned(),
-                reason,
-            })
+            writer
+                .map(|w| Box::new(w) as Box<dyn CacheWriter>)
+                .map_err(|reason| Error::Unwritable { path: path.to_owned(), reason })
         }
         _ => with_formats(path, |formats| formats.write_cache(path, description)),
     }

@@ -36,7 +36,10 @@ pub mod tfxmesh;
 pub mod usc;
 
 pub use error::{Error, ErrorKind, Place, Problem, Result};
-pub use external::{CacheDescription, CacheWriter, ExternalFile, ExternalFormats, check_cache_format, set_external_formats, write_cache};
+pub use external::{
+    CacheDescription, CacheWriter, ExternalFile, ExternalFormats, check_cache_format, set_external_formats,
+    write_cache,
+};
 pub use frame_writer::{FrameError, FrameWriter};
 pub use gltf::Character;
 pub use load::{Format, Loaded, read_body, read_bones, read_groom, read_motion};

@@ -52,7 +52,10 @@ pub struct PointCache {
 pub fn parse(data: &[u8]) -> Result<PointCache, Problem> {
     let mut bytes = Bytes::new(data);
     if bytes.take(MAGIC.len(), "the header")? != MAGIC {
-        return Err(Problem::new(Place::Byte(0), "the file does not begin with POINTCACHE2, so it is no .pc2 file"));
+        return Err(Problem::new(
+            Place::Byte(0),
+            "the file does not begin with POINTCACHE2, so it is no .pc2 file",
+        ));
     }
     let wrong = |at: usize, text: String| Problem::new(Place::Byte(at), text);
     let version: i32 = bytes.value("the version")?;
@@ -63,7 +66,8 @@ pub fn parse(data: &[u8]) -> Result<PointCache, Problem> {
     let first_frame: f32 = bytes.value("the first frame")?;
     let frames_per_sample: f32 = bytes.value("the frames per sample")?;
     let samples: i32 = bytes.value("the number of samples")?;
-    let count = |n: i32, at: usize| usize::try_from(n).map_err(|_| wrong(at, format!("the count {n} is below zero")));
+    let count =
+        |n: i32, at: usize| usize::try_from(n).map_err(|_| wrong(at, format!("the count {n} is below zero")));
     let (points, samples) = (count(points, 16)?, count(samples, 28)?);
     if !(frames_per_sample.is_finite() && frames_per_sample > 0.0 && first_frame.is_finite()) {
         return Err(wrong(20, "the first frame or the frames per sample are not numbers above 0".into()));
@@ -93,13 +97,17 @@ impl Writer {
     /// Begins a file with the points of all grooms.
     pub(crate) fn create(path: &Path, description: &CacheDescription) -> Result<Self, String> {
         let points: usize = description.grooms.iter().map(|(_, groom)| groom.point_count()).sum();
-        let narrow = |n: usize| i32::try_from(n).map_err(|_| format!("{n} points are too many for a .pc2 file"));
+        let narrow =
+            |n: usize| i32::try_from(n).map_err(|_| format!("{n} points are too many for a .pc2 file"));
         let (count, samples) = (narrow(points)?, narrow(description.frames as usize)?);
         let create = || {
             let mut out = BufWriter::new(PendingFile::create(path)?);
             out.write_all(MAGIC)?;
             out.write_all(cast_slice(&[1, count]))?;
-            out.write_all(cast_slice(&[description.first_frame as f32, 1.0 / description.per_frame.max(1) as f32]))?;
+            out.write_all(cast_slice(&[
+                description.first_frame as f32,
+                1.0 / description.per_frame.max(1) as f32,
+            ]))?;
             out.write_all(bytes_of(&samples))?;
             Ok(out)
         };

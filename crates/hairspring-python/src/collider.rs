@@ -31,7 +31,11 @@ pub struct Collider {
 enum Shape {
     Fixed(ColliderShape),
     /// A function of positions [n, 3] and the time, which returns distances [n].
-    Function { function: Py<PyAny>, bounds: (Vec3, Vec3), cell: f32 },
+    Function {
+        function: Py<PyAny>,
+        bounds: (Vec3, Vec3),
+        cell: f32,
+    },
 }
 
 impl From<ColliderShape> for Collider {
@@ -132,13 +136,15 @@ impl Collider {
     #[staticmethod]
     #[pyo3(signature = (function, bounds, *, cell=0.005, once=false))]
     fn custom(function: Bound<'_, PyAny>, bounds: (Floats, Floats), cell: f32, once: bool) -> PyResult<Self> {
-        let (low, high) = (bounds.0.vector::<Vec3, 3>("bounds[0]")?, bounds.1.vector::<Vec3, 3>("bounds[1]")?);
+        let (low, high) =
+            (bounds.0.vector::<Vec3, 3>("bounds[0]")?, bounds.1.vector::<Vec3, 3>("bounds[1]")?);
         let cells = (high - low) / cell;
         if !(cells.is_finite() && cells.min_element() > 0.0 && cell > 0.0) {
             return Err(setting("`bounds` must be a low and a higher corner, and `cell` above 0 [m]"));
         }
         if (cells + 2.0).element_product() > MAX_SAMPLES {
-            let text = format!("the bounds hold more than {MAX_SAMPLES:.0} cells of {cell} m; use a larger `cell`");
+            let text =
+                format!("the bounds hold more than {MAX_SAMPLES:.0} cells of {cell} m; use a larger `cell`");
             return Err(setting(text));
         }
         let shape = Shape::Function { function: function.clone().unbind(), bounds: (low, high), cell };
@@ -199,9 +205,9 @@ impl Collider {
     pub fn fixed(&self) -> PyResult<(ColliderShape, RigidTransform)> {
         match &self.shape {
             Shape::Fixed(shape) => Ok((shape.clone(), self.pose)),
-            Shape::Function { .. } => {
-                Err(setting("a custom collider that is sampled every frame can only be used in `Simulation.step`; pass `once=True`"))
-            }
+            Shape::Function { .. } => Err(setting(
+                "a custom collider that is sampled every frame can only be used in `Simulation.step`; pass `once=True`",
+            )),
         }
     }
 }

@@ -22,7 +22,9 @@ pub struct PythonFormats;
 
 /// Calls `act` with the module; an exception becomes its text.
 fn with_host<T>(act: impl for<'py> FnOnce(Bound<'py, PyModule>) -> PyResult<T>) -> Result<T, String> {
-    Python::attach(|py| py.import("hairspring.host").and_then(act).map_err(|error| error.value(py).to_string()))
+    Python::attach(|py| {
+        py.import("hairspring.host").and_then(act).map_err(|error| error.value(py).to_string())
+    })
 }
 
 fn up(options: &ReadOptions) -> Option<&'static str> {
@@ -56,7 +58,8 @@ impl ExternalFormats for PythonFormats {
             let mut mesh = Mesh {
                 positions: vertices.rows::<Vec3, 3>("vertices")?.to_vec(),
                 triangles: triangles.triples("triangles")?.to_vec(),
-                uvs: uvs.map_or(Ok(Vec::new()), |uvs| Ok::<_, PyErr>(uvs.rows::<Vec2, 2>("uvs")?.to_vec()))?,
+                uvs: uvs
+                    .map_or(Ok(Vec::new()), |uvs| Ok::<_, PyErr>(uvs.rows::<Vec2, 2>("uvs")?.to_vec()))?,
                 ..Mesh::default()
             };
             crate::field::check_mesh(&mesh.positions, &mesh.triangles)?;
@@ -75,7 +78,11 @@ impl ExternalFormats for PythonFormats {
         })
     }
 
-    fn write_cache(&self, path: &Path, description: &CacheDescription) -> Result<Box<dyn CacheWriter>, String> {
+    fn write_cache(
+        &self,
+        path: &Path,
+        description: &CacheDescription,
+    ) -> Result<Box<dyn CacheWriter>, String> {
         with_host(|host| {
             let py = host.py();
             let mut grooms = Vec::new();
@@ -83,7 +90,8 @@ impl ExternalFormats for PythonFormats {
                 // The same properties that Python sees.
                 let shown = Bound::new(py, crate::groom::Groom::of(groom.clone()))?;
                 let fields = PyDict::new(py);
-                for property in ["points", "offsets", "radii", "groups", "group_names", "root_uvs", "colors"] {
+                for property in ["points", "offsets", "radii", "groups", "group_names", "root_uvs", "colors"]
+                {
                     fields.set_item(property, shown.getattr(property)?)?;
                 }
                 fields.set_item("guides_and_weights", shown.getattr("guides")?)?;

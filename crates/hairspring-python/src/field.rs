@@ -30,12 +30,16 @@ impl SignedDistanceField {
     #[new]
     fn new(origin: Floats, cell: f32, distances: Floats) -> PyResult<Self> {
         let [nz, ny, nx] = *distances.shape() else {
-            return Err(setting(format!("`distances` must have the shape [nz, ny, nx], but has {:?}", distances.shape())));
+            return Err(setting(format!(
+                "`distances` must have the shape [nz, ny, nx], but has {:?}",
+                distances.shape()
+            )));
         };
         let size = UVec3::new(nx as u32, ny as u32, nz as u32);
         let samples = distances.numbers()?.to_vec();
         let origin = origin.vector::<Vec3, 3>("origin")?;
-        let field = collide::SignedDistanceField::from_samples(origin, cell, size, samples).map_err(setting)?;
+        let field =
+            collide::SignedDistanceField::from_samples(origin, cell, size, samples).map_err(setting)?;
         Ok(Self(Arc::new(field)))
     }
 
@@ -119,7 +123,8 @@ pub fn sampled(
     let distances: Floats = function.call1((nodes, time))?.extract()?;
     let numbers = distances.numbers()?;
     if numbers.len() != nx * ny * nz {
-        let text = format!("a custom collider returned {} distances for {} points", numbers.len(), nx * ny * nz);
+        let text =
+            format!("a custom collider returned {} distances for {} points", numbers.len(), nx * ny * nz);
         return Err(setting(text));
     }
     collide::SignedDistanceField::from_samples(low, cell, size, numbers.to_vec()).map_err(setting)

@@ -36,7 +36,9 @@ impl ForceField for Field {
             if let Some(a) = values.acceleration.get(first + i) {
                 strand.accelerate(i, *a);
             }
-            if let (Some(v), Some(rate)) = (values.drag_velocity.get(first + i), values.drag_rate.get(first + i)) {
+            if let (Some(v), Some(rate)) =
+                (values.drag_velocity.get(first + i), values.drag_rate.get(first + i))
+            {
                 strand.add_velocity_drag(i, *v, *rate);
             }
             if let Some(v) = values.wind.get(first + i) {
@@ -95,7 +97,9 @@ fn values(result: &Bound<'_, PyAny>, points: usize) -> PyResult<Values> {
         let given: Floats = given.extract()?;
         let rows: &[Vec3] = given.rows::<_, 3>(name)?;
         if rows.len() != points || !rows.iter().all(|v| v.is_finite()) {
-            return Err(setting(format!("a force's `{name}` must be {points} finite vectors, one for each point")));
+            return Err(setting(format!(
+                "a force's `{name}` must be {points} finite vectors, one for each point"
+            )));
         }
         Ok(rows.to_vec())
     };
@@ -123,8 +127,11 @@ fn values(result: &Bound<'_, PyAny>, points: usize) -> PyResult<Values> {
         }
     }
     let drag = (out.drag_velocity.len(), out.drag_rate.len());
-    if drag != (0, 0) && drag != (points, points) || !out.drag_rate.iter().all(|r| r.is_finite() && *r >= 0.0) {
-        return Err(setting("a force's `drag_velocity` [m/s] needs a `drag_rate` of 0 or more [1/s], one for each point"));
+    if drag != (0, 0) && drag != (points, points) || !out.drag_rate.iter().all(|r| r.is_finite() && *r >= 0.0)
+    {
+        return Err(setting(
+            "a force's `drag_velocity` [m/s] needs a `drag_rate` of 0 or more [1/s], one for each point",
+        ));
     }
     Ok(out)
 }

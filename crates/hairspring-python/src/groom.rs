@@ -88,7 +88,9 @@ impl Arrays<'_> {
             let Some(array) = array else { continue };
             let numbers = array.numbers()?;
             if numbers.len() != strands || !numbers.iter().all(|n| n.is_finite() && *n >= 0.0) {
-                return Err(setting(format!("`{name}` must be {strands} numbers of 0 or more, one for each strand")));
+                return Err(setting(format!(
+                    "`{name}` must be {strands} numbers of 0 or more, one for each strand"
+                )));
             }
             scales.resize(strands, StrandScale::default());
             for (scale, n) in scales.iter_mut().zip(numbers) {
@@ -113,7 +115,10 @@ impl Arrays<'_> {
         let points: &[Vec3] = self.points.rows::<_, 3>("points")?;
         let offsets = self.offsets.numbers()?;
         let ordered = offsets.windows(2).all(|w| w[0] <= w[1]);
-        if offsets.first() != Some(&0) || !ordered || offsets.last().map(|n| *n as usize) != Some(points.len()) {
+        if offsets.first() != Some(&0)
+            || !ordered
+            || offsets.last().map(|n| *n as usize) != Some(points.len())
+        {
             let text = "`offsets` must begin with 0, not decrease, and end with the number of points";
             return Err(setting(text));
         }
@@ -295,7 +300,9 @@ impl Groom {
     fn colors<'py>(this: &Bound<'py, Self>) -> PyResult<Option<Bound<'py, PyArray2<f32>>>> {
         let colors = &this.get().inner.colors;
         // SAFETY: as for `points`.
-        (!colors.is_empty()).then(|| unsafe { shared_rows::<_, 3>(colors, this.clone().into_any()) }).transpose()
+        (!colors.is_empty())
+            .then(|| unsafe { shared_rows::<_, 3>(colors, this.clone().into_any()) })
+            .transpose()
     }
 
     /// Guides of each strand, [strands, 3] uint32, and their weights, [strands, 3] float32; or None.
@@ -309,7 +316,8 @@ impl Groom {
         if guides.is_empty() {
             return Ok(None);
         }
-        let (strands, weights): (Vec<[u32; 3]>, Vec<[f32; 3]>) = guides.iter().map(|g| (g.guides, g.weights)).unzip();
+        let (strands, weights): (Vec<[u32; 3]>, Vec<[f32; 3]>) =
+            guides.iter().map(|g| (g.guides, g.weights)).unzip();
         Ok(Some((
             PyArray2::from_owned_array(py, numpy::ndarray::Array2::from(strands)),
             PyArray2::from_owned_array(py, numpy::ndarray::Array2::from(weights)),

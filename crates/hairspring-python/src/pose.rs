@@ -41,7 +41,9 @@ fn rigid(m: Mat4) -> PyResult<RigidTransform> {
     let identity = axes.transpose() * axes - glam::Mat3::IDENTITY;
     let error = identity.to_cols_array().iter().fold(0.0f32, |most, e| most.max(e.abs()));
     if !(error < ORTHOGONAL && axes.determinant() > 0.0) {
-        return Err(setting("the matrix of a pose must rotate and translate only; it scales, shears or mirrors"));
+        return Err(setting(
+            "the matrix of a pose must rotate and translate only; it scales, shears or mirrors",
+        ));
     }
     Ok(RigidTransform { rotation: Quat::from_mat3(&axes).normalize(), translation: m.w_axis.truncate() })
 }

@@ -18,7 +18,10 @@ fn with<T: Serialize + DeserializeOwned + Validate>(
             if !fields.contains(&key)? {
                 let mut known: Vec<String> = fields.keys().iter().map(|k| k.to_string()).collect();
                 known.sort();
-                return Err(setting(format!("there is no setting `{key}`; the settings are {}", known.join(", "))));
+                return Err(setting(format!(
+                    "there is no setting `{key}`; the settings are {}",
+                    known.join(", ")
+                )));
             }
             // numpy's numbers and arrays become Python's own.
             let value = if value.hasattr("tolist")? { value.call_method0("tolist")? } else { value };
@@ -33,9 +36,9 @@ fn with<T: Serialize + DeserializeOwned + Validate>(
 /// Reads a field as Python's own type.
 fn field<'py>(py: Python<'py>, settings: &impl Serialize, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let fields = pythonize(py, settings).map_err(setting)?.cast_into::<PyDict>()?;
-    fields.get_item(name)?.ok_or_else(|| {
-        pyo3::exceptions::PyAttributeError::new_err(format!("there is no setting `{name}`"))
-    })
+    fields
+        .get_item(name)?
+        .ok_or_else(|| pyo3::exceptions::PyAttributeError::new_err(format!("there is no setting `{name}`")))
 }
 
 /// The methods that all settings have: fields as attributes, `replace`, equality and a text.

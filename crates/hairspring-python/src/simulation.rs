@@ -152,7 +152,8 @@ impl Simulation {
         let anchor = anchor.map_or_else(RigidTransform::default, |pose| pose.0);
         let roots = match (&roots, &rotations) {
             (None, None) => {
-                let carried = |p: &Vec3| RigidTransform { translation: anchor.point(*p), rotation: anchor.rotation };
+                let carried =
+                    |p: &Vec3| RigidTransform { translation: anchor.point(*p), rotation: anchor.rotation };
                 self.rest_roots.iter().map(carried).collect()
             }
             (None, Some(_)) => return Err(setting("`rotations` needs `roots`")),
@@ -166,9 +167,8 @@ impl Simulation {
         self.forces.evaluate(py, &self.inner, self.time)?;
         let air = Air { wind, time: self.time, ..Air::default() };
         let inner = &mut self.inner;
-        let report = py.detach(|| {
-            inner.try_step(&StepInput { dt, anchor, roots: &roots, obstacles: &obstacles, air })
-        });
+        let report = py
+            .detach(|| inner.try_step(&StepInput { dt, anchor, roots: &roots, obstacles: &obstacles, air }));
         let report = report.map_err(setting)?;
         self.time += f64::from(dt);
         py.check_signals()?;
@@ -224,7 +224,9 @@ impl Simulation {
 
     /// Writes the positions to `out`, a contiguous float32 array [points, 3], without allocating.
     fn write_points(&self, out: Bound<'_, PyAny>) -> PyResult<()> {
-        fill_rows::<3>(&out, self.inner.point_count(), "out", |out| self.inner.write_points(cast_slice_mut(out)))
+        fill_rows::<3>(&out, self.inner.point_count(), "out", |out| {
+            self.inner.write_points(cast_slice_mut(out))
+        })
     }
 
     /// Writes the velocities to `out`, a contiguous float32 array [points, 3], without allocating.

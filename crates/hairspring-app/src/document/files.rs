@@ -53,7 +53,8 @@ impl Document {
     pub fn save(&mut self, path: &Path) -> Result<(), AppError> {
         let path = destination(path)?;
         let from = settled(&self.path);
-        let move_to = |text: &str| text_in_folder(text, [&from, &path].map(|p| p.parent().unwrap_or(Path::new(""))));
+        let move_to =
+            |text: &str| text_in_folder(text, [&from, &path].map(|p| p.parent().unwrap_or(Path::new(""))));
         let text = move_to(&self.draft.text)?;
         atomically(&path, |out| out.write_all(text.as_bytes()))
             .map_err(|why| AppError::new(format!("{} could not be written: {why}", path.display())))?;

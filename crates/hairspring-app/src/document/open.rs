@@ -32,7 +32,9 @@ impl Role {
     fn of(path: &Path) -> Option<Self> {
         Some(match Format::of(path)? {
             Format::Scene => Self::Scene,
-            Format::Hair | Format::Tfx | Format::Usc | Format::Csv | Format::Usd | Format::Alembic => Self::Groom,
+            Format::Hair | Format::Tfx | Format::Usc | Format::Csv | Format::Usd | Format::Alembic => {
+                Self::Groom
+            }
             Format::Obj if holds_polylines(path) => Self::Groom,
             Format::Obj | Format::Gltf | Format::TfxMesh => Self::Body,
             Format::Bvh => Self::Motion,

@@ -33,8 +33,9 @@ impl Cache {
         // Says before the simulation that there is no writer.
         hairspring_io::check_cache_format(&self.path).map_err(Fault::writing)?;
         let folder = self.folder();
-        std::fs::create_dir_all(&folder)
-            .map_err(|e| Fault::Unwritable(format!("the folder {} could not be created: {e}", folder.display())))?;
+        std::fs::create_dir_all(&folder).map_err(|e| {
+            Fault::Unwritable(format!("the folder {} could not be created: {e}", folder.display()))
+        })?;
         Ok(folder.join("sample.######.data"))
     }
 
@@ -55,7 +56,8 @@ impl Cache {
             ..description
         };
         let mut writer = write_cache(&self.path, &description).map_err(Fault::writing)?;
-        let failed = |why: String| Fault::Unwritable(format!("{} could not be written: {why}", self.path.display()));
+        let failed =
+            |why: String| Fault::Unwritable(format!("{} could not be written: {why}", self.path.display()));
         let read = |k: usize| numbers.get(k).map(|n| points_of(&output::frame_path(pattern, *n))).transpose();
         let mut progress = console.progress("writing", numbers.len() as u32);
         let step = samples.rate().frame_length() as f32;
@@ -69,7 +71,8 @@ impl Cache {
             (before, now) = (Some(points), after);
             progress.step(|| format!("frame {frame}"));
             if interrupt::asked() {
-                let text = "stopped before the file was complete; run the same command with --resume to continue";
+                let text =
+                    "stopped before the file was complete; run the same command with --resume to continue";
                 return Err(Fault::Interrupted(text.into()));
             }
         }
@@ -88,7 +91,8 @@ impl Cache {
 
 /// Reads the points of a sample.
 fn points_of(path: &Path) -> Result<Vec<Vec3>, Fault> {
-    let data = std::fs::read(path).map_err(|e| Fault::Unreadable(format!("{} could not be read: {e}", path.display())))?;
+    let data = std::fs::read(path)
+        .map_err(|e| Fault::Unreadable(format!("{} could not be read: {e}", path.display())))?;
     usc::parse(&data).map(|groom| groom.points).map_err(|p| Fault::Content(p.in_file(path).to_string()))
 }
 

@@ -28,8 +28,9 @@ impl Checkpoints {
         let name = pattern.file_name().unwrap_or_default().to_string_lossy();
         let prefix = &name[..name.find('#').unwrap_or(name.len())];
         let folder = pattern.with_file_name(format!("{prefix}checkpoints"));
-        fs::create_dir_all(&folder)
-            .map_err(|e| Fault::Unwritable(format!("the folder {} could not be created: {e}", folder.display())))?;
+        fs::create_dir_all(&folder).map_err(|e| {
+            Fault::Unwritable(format!("the folder {} could not be created: {e}", folder.display()))
+        })?;
         Ok(Self { folder, every, origin })
     }
 
@@ -60,7 +61,8 @@ impl Checkpoints {
             let found = self.read(step);
             if found.is_none() {
                 let path = self.path(step);
-                console.note(format_args!("{} is damaged or of another bake, and is not used", path.display()));
+                console
+                    .note(format_args!("{} is damaged or of another bake, and is not used", path.display()));
             }
             Some((step, found?))
         })

@@ -115,7 +115,8 @@ impl Options {
         let known = Format::of(output).is_some_and(|f| Format::GROOMS.contains(&f));
         let Some(cache) = cache else {
             if !known {
-                let text = "unknown extension; hair is baked to .hair, .tfx, .data, .usdc, .usda, .abc or .pc2";
+                let text =
+                    "unknown extension; hair is baked to .hair, .tfx, .data, .usdc, .usda, .abc or .pc2";
                 return wrong(format!("{}: {text}", output.display()));
             }
             let one = self.frames.is_some_and(|f| f.count() == 1);
@@ -127,11 +128,13 @@ impl Options {
                 ));
             }
             if self.resume && !output::is_sequence(output) {
-                let text = "--resume needs numbered files, such as NAME.####.hair; a single file cannot be resumed";
+                let text =
+                    "--resume needs numbered files, such as NAME.####.hair; a single file cannot be resumed";
                 return wrong(text.into());
             }
             if self.samples > 1 || self.over.is_some() || self.keep_frames {
-                let text = "--samples, --over and --keep-frames need one file of moving strands, such as NAME.usdc";
+                let text =
+                    "--samples, --over and --keep-frames need one file of moving strands, such as NAME.usdc";
                 return wrong(text.into());
             }
             output::try_folder(&output::frame_path(output, 1))?;
@@ -179,8 +182,12 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let mut wanted = all.clone();
     let mut manifest = None;
     if output::is_sequence(&pattern) {
-        let begun =
-            Manifest::begin(&pattern, Origin::new("bake", &options.listed(), files), options.resume, console)?;
+        let begun = Manifest::begin(
+            &pattern,
+            Origin::new("bake", &options.listed(), files),
+            options.resume,
+            console,
+        )?;
         if options.resume {
             wanted = begun.unfinished(&wanted, &pattern, console);
         }
@@ -208,7 +215,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             Some(Checkpoints::new(&pattern, every * options.samples, manifest.origin())?)
         }
         (Some(_), None) => {
-            let text = "--checkpoint needs numbered files, such as NAME.####.hair, or one file of moving strands";
+            let text =
+                "--checkpoint needs numbered files, such as NAME.####.hair, or one file of moving strands";
             return Err(Fault::Usage(text.into()));
         }
     };
@@ -218,7 +226,9 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         && let Some(checkpoints) = &checkpoints
         && let Some((step, state)) = checkpoints.latest(first, console)
     {
-        stage.restore(&state).map_err(|why| Fault::Content(format!("the checkpoint of step {step}: {why}")))?;
+        stage
+            .restore(&state)
+            .map_err(|why| Fault::Content(format!("the checkpoint of step {step}: {why}")))?;
         console.note(format_args!("continues from frame {}", samples.frame_of(samples.at_step(step))));
         begin = step;
     }
@@ -271,7 +281,12 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     if let Some(cache) = &cache {
         let source = options.input.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        cache.put_together((&all, &samples), &pattern, selection.describe(&names, grooms, source), console)?;
+        cache.put_together(
+            (&all, &samples),
+            &pattern,
+            selection.describe(&names, grooms, source),
+            console,
+        )?;
         if !options.keep_frames {
             cache.remove_samples(console);
         }
@@ -287,7 +302,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         say(totals.json(&stage, summary));
     } else {
         let skipped = if skipped > 0 { format!(", {skipped} existed already") } else { String::new() };
-        say(format_args!("wrote    {} ({}{skipped})", options.output.display(), totals::frames(wanted.len())));
+        say(format_args!(
+            "wrote    {} ({}{skipped})",
+            options.output.display(),
+            totals::frames(wanted.len())
+        ));
         totals.tell(&stage);
     }
     Ok(())

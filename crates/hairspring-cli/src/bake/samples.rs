@@ -43,7 +43,8 @@ impl Samples {
     /// Checks that frames are not before the start.
     pub fn check(&self, range: FrameRange) -> Result<(), Fault> {
         if range.first < self.start {
-            let text = format!("frame {} is before frame {}, which is at time 0 (--start)", range.first, self.start);
+            let text =
+                format!("frame {} is before frame {}, which is at time 0 (--start)", range.first, self.start);
             return Err(Fault::Usage(text));
         }
         Ok(())

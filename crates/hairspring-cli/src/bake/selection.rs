@@ -62,7 +62,8 @@ impl Selection {
 
     /// Describes the grooms, which have these names or none, for a file of moving strands.
     pub fn describe(&self, names: &[String], grooms: Vec<Groom>, source: String) -> CacheDescription {
-        let guides = (0..grooms.len()).map(|g| self.strands(g).map(|s| self.simulated[g][s]).collect()).collect();
+        let guides =
+            (0..grooms.len()).map(|g| self.strands(g).map(|s| self.simulated[g][s]).collect()).collect();
         let name = |k: usize| match names.get(k).filter(|name| !name.is_empty()) {
             Some(name) => name.clone(),
             None if grooms.len() == 1 => "groom".into(),

@@ -46,7 +46,14 @@ pub fn parse(
     let (mesh, joints, weights) = mesh::read(&document, &buffers, &skeleton, &mut notes)?;
     let clips = animation::clips(&document, &buffers, &skeleton, &mut notes)?;
     let skin = Skin { joints, weights, inverse_bind: skeleton.inverse_bind };
-    Ok((Character { body: Body { mesh, joints: skeleton.joints, skin: Some(skin) }, clips, vertex_cache: None }, notes))
+    Ok((
+        Character {
+            body: Body { mesh, joints: skeleton.joints, skin: Some(skin) },
+            clips,
+            vertex_cache: None,
+        },
+        notes,
+    ))
 }
 
 /// Returns the transform, or `None` if it is singular or not finite.

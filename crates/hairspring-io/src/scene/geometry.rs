@@ -78,9 +78,11 @@ impl Reader<'_> {
         };
         let mut character = match (&file.body, made.body.take()) {
             (Some(named), _) => Some(self.body(named, "body")?),
-            (None, body) => {
-                body.map(|body| Character { body, clips: made.clip.take().into_iter().collect(), vertex_cache: None })
-            }
+            (None, body) => body.map(|body| Character {
+                body,
+                clips: made.clip.take().into_iter().collect(),
+                vertex_cache: None,
+            }),
         };
         let collision = file.collision.as_ref().map(|b| self.body(b, "collision mesh")).transpose()?;
         let grown = made.grooms.len();

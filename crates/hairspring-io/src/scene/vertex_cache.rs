@@ -18,7 +18,12 @@ const MAX_POSITIONS: usize = 150_000_000;
 
 impl Reader<'_> {
     /// Reads the vertex cache `cache` of `body`, which the table `named` describes.
-    pub(super) fn vertex_cache(&mut self, named: &BodyFile, cache: &FileName, body: &Body) -> Result<VertexCache> {
+    pub(super) fn vertex_cache(
+        &mut self,
+        named: &BodyFile,
+        cache: &FileName,
+        body: &Body,
+    ) -> Result<VertexCache> {
         let path = self.resolve(cache);
         let near = cache.span().start;
         let wrong = |text: String| self.wrong(near, "vertex_cache", text);
@@ -52,7 +57,9 @@ impl Reader<'_> {
                     return Err(wrong(text));
                 }
                 if frames.len().saturating_mul(vertices) > MAX_POSITIONS {
-                    return Err(wrong(format!("the files hold more than {MAX_POSITIONS} positions; shorten the motion")));
+                    return Err(wrong(format!(
+                        "the files hold more than {MAX_POSITIONS} positions; shorten the motion"
+                    )));
                 }
                 frames.push(read.positions);
             }

@@ -230,7 +230,9 @@ impl StagedBody {
         }
         let mut rest = body.clone();
         let pieces = match making {
-            SurfaceKind::Field(cell) if !cached => rigid_parts::take(&mut rest, self.pose.anchor_joint(), PIECE * cell),
+            SurfaceKind::Field(cell) if !cached => {
+                rigid_parts::take(&mut rest, self.pose.anchor_joint(), PIECE * cell)
+            }
             _ => Vec::new(),
         };
         let surface = Surface::new(making, &rest);

@@ -100,7 +100,8 @@ impl BodyPose {
 
     /// Poses the body for `time` [s].
     pub(super) fn set(&mut self, scene: &Scene, time: f64) {
-        self.current = self.at(scene, time).unwrap_or_else(|| Pose { world: self.rest.clone(), ..Pose::default() });
+        self.current =
+            self.at(scene, time).unwrap_or_else(|| Pose { world: self.rest.clone(), ..Pose::default() });
         if self.moved != RigidTransform::default() {
             let moved = Affine3A::from_rotation_translation(self.moved.rotation, self.moved.translation);
             self.current.world.iter_mut().for_each(|joint| *joint = moved * *joint);

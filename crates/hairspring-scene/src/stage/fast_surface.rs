@@ -137,9 +137,7 @@ mod tests {
     fn a_sheet_asks_for_parts_by_its_thickness() {
         let mesh = finger();
         let sheet = FastSurfaceProbe::of_sheet(&mesh, 0.002);
-        let parts = |moved: Vec3| {
-            sheet.parts(&mesh, &mesh.positions, bent(&mesh, moved), None)
-        };
+        let parts = |moved: Vec3| sheet.parts(&mesh, &mesh.positions, bent(&mesh, moved), None);
         // A millimeter for each slice.
         assert_eq!(parts(Vec3::Y * 0.0009), 1);
         assert_eq!(parts(Vec3::Y * 0.0195), 20);

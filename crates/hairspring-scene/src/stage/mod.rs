@@ -513,7 +513,9 @@ fn check_vertex_cache(scene: &Scene) -> Result<(), StageError> {
         return Err(StageError::VertexCache("the scene has no body"));
     };
     if body.skin.is_some() || scene.clip.is_some() {
-        return Err(StageError::VertexCache("the body already moves by a skeleton; remove one of the two motions"));
+        return Err(StageError::VertexCache(
+            "the body already moves by a skeleton; remove one of the two motions",
+        ));
     }
     if !(cache.rate.is_finite() && cache.rate > 0.0) {
         return Err(StageError::VertexCache("its frame rate is not above 0"));

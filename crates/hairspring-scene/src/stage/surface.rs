@@ -103,12 +103,7 @@ impl Surface {
 
     /// Returns the number of time slices for a frame that ends with `body` in this pose and starts at the
     /// last update.
-    pub(super) fn parts(
-        &self,
-        body: &Body,
-        pose: &Pose,
-        within: Option<(Vec3, Vec3)>,
-    ) -> usize {
+    pub(super) fn parts(&self, body: &Body, pose: &Pose, within: Option<(Vec3, Vec3)>) -> usize {
         if !pose.deforms(body) {
             return 1;
         }
