@@ -9,8 +9,9 @@ use std::{
 /// Folder of the virtual environment.
 const ENVIRONMENT: &str = "target/python";
 
-/// What the tests need in addition to the package: Blender, Open Job Description, Ray and a checker of the type stubs.
-const TOOLS: [&str; 5] = ["pytest>=8", "mypy>=1.11", "bpy==5.0.1", "openjd-cli>=0.8", "pillow>=10"];
+/// Clients that the tests use: Blender, Open Job Description and a checker of the type stubs. Not every version of Python and not
+/// every system has each of them; without one, its tests are skipped.
+const CLIENTS: [&str; 3] = ["bpy==5.0.1", "openjd-cli>=0.8", "mypy>=1.11"];
 
 /// Passed, failed and skipped tests.
 pub type Counts = [u64; 3];
@@ -24,8 +25,12 @@ pub fn test() -> Result<Counts, String> {
         return Ok([0, 0, 1]);
     };
     let pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
-    run::program(&python, &[&pip[..], &[".[usd,alembic,wedge]"]].concat())?;
-    run::program(&python, &[&pip[..], &TOOLS].concat())?;
+    run::program(&python, &[&pip[..], &[".[usd,alembic,wedge]", "pytest>=8"]].concat())?;
+    for client in CLIENTS {
+        if let Err(why) = run::program(&python, &[&pip[..], &[client]].concat()) {
+            println!("skipped the tests with {client}: {why}");
+        }
+    }
     let arguments = ["-m", "pytest", "-q", "-rs", "python/tests"];
     println!("$ {} {}", python.display(), arguments.join(" "));
     let output = Command::new(&python)
