@@ -170,13 +170,13 @@ impl Scene {
     /// The solver's settings.
     #[getter]
     fn solver(&self) -> Solver {
-        Solver(self.inner.solver.clone())
+        Solver(self.inner.solver)
     }
 
     /// The hair volume's settings.
     #[getter]
     fn volume(&self) -> Volume {
-        Volume(self.inner.volume.clone())
+        Volume(self.inner.volume)
     }
 
     /// The directional wind.
