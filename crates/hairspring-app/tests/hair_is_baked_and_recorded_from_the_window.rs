@@ -85,7 +85,7 @@ fn recordings_have_the_size_and_the_rate_that_were_chosen() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);
     let script = format!(
-        "pause\nwait 1\nsize 200 120\nrate 24\npictures {} 0.25\nsize 96 64\nstill {}\n",
+        "pause\nreset\nwait 1\nsize 200 120\nrate 24\npictures {} 0.25\nsize 96 64\nstill {}\n",
         file("p.##.png").display(),
         file("s.png").display()
     );

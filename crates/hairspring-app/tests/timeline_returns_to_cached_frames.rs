@@ -5,6 +5,7 @@ mod support;
 
 use glam::Vec3;
 use hairspring_app::{Action, Document, Session, Snapshot};
+use hairspring_scene::stage::Value;
 use hairspring_test::farthest;
 use std::sync::Arc;
 use support::SMALL;
@@ -17,6 +18,9 @@ fn session() -> Session {
     let mut session = Session::new(document, 2, None, || ()).unwrap();
     session.act(Action::Play(false)).unwrap();
     session.act(Action::Reset).unwrap();
+    // Actions are done in order, so a snapshot with values is one after the reset.
+    session.act(Action::Show(Some(Value::Speed))).unwrap();
+    wait(&session, |s| s.frame == 0 && !s.stages[0].values.is_empty());
     session
 }
 
@@ -48,7 +52,6 @@ fn points(snapshot: &Snapshot) -> Vec<Vec3> {
 #[test]
 fn a_cached_frame_is_shown_again_and_plays_on_as_before() {
     let mut session = session();
-    wait(&session, |s| s.frame == 0);
     let [early, late] = [12, 30].map(|frame| points(&step(&mut session, frame)));
     let shown = wait(&session, |s| s.frame == 30);
     assert_eq!(shown.cached.frames, (0..=30).collect::<Vec<_>>());

@@ -1,7 +1,7 @@
 //! The timeline: the frames of the scene, those that are cached, and the range that is played in a loop.
 
 use crate::{
-    player::RATE,
+    player::{CachedFrames, RATE},
     session::{Action, Session},
     snapshot::Snapshot,
 };
@@ -98,16 +98,20 @@ fn bar(
     }
     painter.vline(x(frame), rect.y_range(), (2.0, Color32::from_rgb(250, 200, 90)));
     response.on_hover_ui(|ui| {
-        let [used, limit] = cached.bytes.map(|bytes| bytes.div_ceil(1 << 20));
         ui.label(format!(
             "Drag to go through the cached frames (blue). A frame is 1/{:.0} s; frame 1 is at time 0.",
             RATE.hertz()
         ));
-        ui.label(format!("{} frames are cached, in at most {used} MiB of {limit} MiB.", cached.frames.len()));
         if let Some([first, second, ..]) = cached.frames.get(..2)
             && second - first > 1
         {
             ui.label(format!("To fit, one frame of {} is kept.", second - first));
         }
     });
+}
+
+/// How many frames are cached, and the memory for it.
+pub fn cache_note(cached: &CachedFrames) -> String {
+    let [used, limit] = cached.bytes.map(|bytes| bytes.div_ceil(1 << 20));
+    format!("{} frames cached in {used} of {limit} MiB", cached.frames.len())
 }

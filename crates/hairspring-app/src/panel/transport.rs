@@ -41,6 +41,7 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
                 format!("step {:.1} ms", 1e3 * took)
             };
             ui.weak(pace).on_hover_text("How long a step of 1/60 s takes. Where it takes longer, time runs slower; nothing is left out.");
+            ui.weak(super::timeline::cache_note(&snapshot.cached));
         }
     });
     if let Some(snapshot) = snapshot {
