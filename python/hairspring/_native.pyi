@@ -258,4 +258,24 @@ def run_command(arguments: Sequence[str]) -> int: ...
 def bake_scene(arguments: Sequence[str]) -> Scene: ...
 def scene_with(path: _Path, folder: _Path, values: Sequence[tuple[str, str]]) -> str: ...
 
-__all__: list[str]
+__all__ = [
+    "Collider",
+    "bake_scene",
+    "run_command",
+    "scene_with",
+    "FileError",
+    "HairspringError",
+    "SettingError",
+    "SignedDistanceField",
+    "Groom",
+    "Body",
+    "Scene",
+    "Material",
+    "Solver",
+    "Volume",
+    "Wind",
+    "Simulation",
+    "Snapshot",
+    "Stage",
+    "__version__",
+]
