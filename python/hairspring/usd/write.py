@@ -35,7 +35,9 @@ class CurvesWriter:
         self.pending = self.path.with_name(f".hairspring-{os.getpid()}-{self.path.name}")
         self.layer = Sdf.Layer.CreateNew(str(self.pending))
         self.stage = Usd.Stage.Open(self.layer)
-        self.targets: list[tuple[UsdGeom.BasisCurves, slice, np.ndarray, np.ndarray]] = []
+        # Curves, their points, and the transform to their own space, if it is not that of the file.
+        self.targets: list[tuple[UsdGeom.BasisCurves, slice, tuple[np.ndarray, np.ndarray] | None]] = []
+        self.margin: dict[str, float] = {}
         try:
             self._begin(over)
         except BaseException:
@@ -66,7 +68,7 @@ class CurvesWriter:
         for groom in self.description.grooms:
             curves = UsdGeom.BasisCurves.Define(self.stage, f"/Hair/{identifier(groom.name, taken)}")
             self._describe(curves, groom, slice(0, len(groom.counts)), np.eye(3), np.zeros(3), complete=True)
-            self.targets.append((curves, slice(first, first + len(groom.points)), np.eye(3), np.zeros(3)))
+            self.targets.append((curves, slice(first, first + len(groom.points)), None))
             first += len(groom.points)
 
     def _override_all(self, over: Path) -> None:
@@ -96,7 +98,7 @@ class CurvesWriter:
                 curves = UsdGeom.BasisCurves(self.stage.OverridePrim(prim.GetPath()))
                 self._describe(curves, groom, own, back, shift, complete=False)
                 points = slice(first + int(groom.offsets[own.start]), first + int(groom.offsets[own.stop]))
-                self.targets.append((curves, points, back, shift))
+                self.targets.append((curves, points, (back, shift)))
             first += len(groom.points)
         if not self.targets:
             raise ValueError(f"none of the grooms was read from {over}")
@@ -110,6 +112,7 @@ class CurvesWriter:
         curves.CreateCurveVertexCountsAttr(Vt.IntArray.FromNumpy(counts.astype(np.int32)))
         size = float(np.cbrt(abs(np.linalg.det(back))))
         widths = (2 * size * groom.radii[points]).astype(np.float32)
+        self.margin[str(curves.GetPath())] = 0.5 * float(widths.max())
         curves.CreateWidthsAttr(Vt.FloatArray.FromNumpy(widths))
         curves.SetWidthsInterpolation(UsdGeom.Tokens.vertex)
         prim = curves.GetPrim()
@@ -143,12 +146,15 @@ class CurvesWriter:
     def frame(self, frame: float, points: np.ndarray, velocities: np.ndarray) -> None:
         """Writes the points of all grooms [points, 3] [m] and their velocities [m/s] at a frame."""
         time = Usd.TimeCode(frame)
-        for curves, own, back, shift in self.targets:
-            placed = np.ascontiguousarray((points[own].astype(np.float64) - shift) @ back, np.float32)
-            moved = np.ascontiguousarray(velocities[own].astype(np.float64) @ back, np.float32)
+        for curves, own, space_of in self.targets:
+            placed, moved = points[own], velocities[own]
+            if space_of:
+                back, shift = space_of
+                placed = np.ascontiguousarray((placed.astype(np.float64) - shift) @ back, np.float32)
+                moved = np.ascontiguousarray(moved.astype(np.float64) @ back, np.float32)
             curves.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy(placed), time)
             curves.GetVelocitiesAttr().Set(Vt.Vec3fArray.FromNumpy(moved), time)
-            margin = 0.5 * float(np.max(curves.GetWidthsAttr().Get()))
+            margin = self.margin[str(curves.GetPath())]
             low, high = placed.min(axis=0) - margin, placed.max(axis=0) + margin
             curves.CreateExtentAttr().Set(Vt.Vec3fArray([Gf.Vec3f(*map(float, low)), Gf.Vec3f(*map(float, high))]), time)
 
