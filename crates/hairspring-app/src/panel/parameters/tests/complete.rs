@@ -35,6 +35,8 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("body.rig", "a file"),
     ("body.weights", "a file"),
     ("body.more", "further files"),
+    ("body.vertex_cache", "a file"),
+    ("body.vertex_rate", "how that file is read"),
     ("collision", "a file"),
     ("collision.joint", "belongs to that file"),
     ("sheet", "a file"),
