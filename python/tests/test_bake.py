@@ -24,25 +24,32 @@ def frames_of(folder):
     return {f.name: f.read_bytes() for f in sorted(folder.glob("h.*.data"))}
 
 
+def changed_after(folder, time):
+    """Number of frames that were written after a time."""
+    return sum(f.stat().st_mtime > time for f in folder.glob("h.*.data"))
+
+
 def test_kill_9_at_random_moments_gives_the_undisturbed_result(tmp_path):
     scene = shot(tmp_path, "[wind]\nvelocity = [1.0, 0.0, 0.5]\n")
     (tmp_path / "a").mkdir()
     (tmp_path / "b").mkdir()
     options = ["--frames", f"1-{FRAMES}", "--checkpoint", "6", "--threads", "1"]
-    began = time.time()
     whole = subprocess.run(bake(scene, "-o", tmp_path / "a" / "h.####.data", *options), capture_output=True, text=True)
     assert whole.returncode == 0, whole.stderr
-    length = time.time() - began
     command = bake(scene, "-o", tmp_path / "b" / "h.####.data", *options, "--resume")
     rng, resumed = random.Random(1), False
-    for _ in range(10):
-        process = subprocess.Popen(command, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True)
-        try:
-            _, error = process.communicate(timeout=rng.uniform(0.2, 0.7) * length)
-        except subprocess.TimeoutExpired:
-            os.kill(process.pid, signal.SIGKILL)
-            _, error = process.communicate()
-        resumed |= "continues from frame" in error
+    for round in range(10):
+        log = tmp_path / f"log{round}"
+        with open(log, "w") as errors:
+            process = subprocess.Popen(command, stderr=errors, stdout=subprocess.DEVNULL)
+        # Killed at a random moment after a random number of further frames.
+        began, more = time.time(), rng.randrange(1, 9)
+        while process.poll() is None and changed_after(tmp_path / "b", began) < more:
+            time.sleep(0.001)
+        time.sleep(rng.uniform(0, 0.01))
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+        resumed |= "continues from frame" in log.read_text()
     last = subprocess.run(command, capture_output=True, text=True)
     assert last.returncode == 0, last.stderr
     assert resumed or "continues from frame" in last.stderr
