@@ -106,7 +106,7 @@ pub enum RunError {
 ///
 /// # Errors
 /// Returns an error if the scene cannot be read, if there is no desktop, or if one of its libraries is missing.
-/// The message says what is missing and what to do.
+/// The error names the missing library and the package to install.
 pub fn run(options: Options) -> Result<Ended, RunError> {
     let native = eframe::NativeOptions {
         viewport: egui::ViewportBuilder::default()

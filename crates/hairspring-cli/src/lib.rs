@@ -63,21 +63,6 @@ fn explain(refused: &clap::Error) -> Result<u8, Fault> {
     Ok(0)
 }
 
-/// Returns the scene that `hairspring bake` with these arguments simulates. The first argument is the name of the program.
-///
-/// # Errors
-/// One sentence, if the arguments are not those of a bake or the scene cannot be read.
-pub fn bake_scene(arguments: impl IntoIterator<Item = OsString>) -> Result<hairspring_scene::Scene, String> {
-    let cli = Cli::try_parse_from(arguments).map_err(|refused| refused.to_string())?;
-    match cli.command {
-        // What the reader notes, the bake itself has printed.
-        Some(Command::Bake(options)) => options
-            .scene(Console::new(true, false, args::ProgressForm::Text))
-            .map_err(|fault| fault.to_string()),
-        _ => Err("the command is not `bake`".into()),
-    }
-}
-
 /// Returns the text of the scene file `path` with other values, for a file in `folder`: the paths of the files that it names are
 /// rewritten. `values` holds keys such as `solver.substeps`, and values as TOML.
 ///

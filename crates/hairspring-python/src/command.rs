@@ -1,6 +1,6 @@
 //! The program `hairspring` inside of the package.
 
-use crate::{errors::setting, scene::Scene};
+use crate::errors::setting;
 use pyo3::prelude::*;
 use std::{ffi::OsString, path::PathBuf};
 
@@ -8,13 +8,6 @@ use std::{ffi::OsString, path::PathBuf};
 #[pyfunction]
 pub fn run_command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
     py.detach(|| hairspring_cli::run(arguments))
-}
-
-/// Returns the scene that `hairspring bake` with these arguments simulates.
-#[pyfunction]
-pub fn bake_scene(py: Python<'_>, arguments: Vec<OsString>) -> PyResult<Scene> {
-    let scene = py.detach(|| hairspring_cli::bake_scene(arguments)).map_err(setting)?;
-    Ok(Scene::of(scene))
 }
 
 /// Returns the text of a scene file with other values, for a file in `folder`. `values` is a list of keys and values as TOML.

@@ -26,7 +26,7 @@ mod _native {
     #[pymodule_export]
     use super::{
         collider::Collider,
-        command::{bake_scene, run_command, scene_with},
+        command::{run_command, scene_with},
         errors::{FileError, HairspringError, SettingError},
         field::SignedDistanceField,
         groom::Groom,

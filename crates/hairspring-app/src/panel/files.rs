@@ -72,8 +72,8 @@ impl For {
             Self::Record(Kind::Clip | Kind::Turntable) => "An .mp4 with H.264 video.",
             Self::Export => "All hairs as they are now, as .hair, .tfx or .data.",
             Self::Bake => {
-                "As `hairspring bake`: the scene is played anew from time 0, with the changes that are not saved. \
-                 # stands for the digits of the frame's number; frame 1 is at time 0."
+                "Simulates the scene from time 0, including unsaved changes, and writes one groom file per frame, like \
+                 `hairspring bake`. The # signs stand for the digits of the frame number; frame 1 is at time 0."
             }
         }
     }

@@ -14,7 +14,7 @@ pub struct Folder {
     path: PathBuf,
     folders: Vec<String>,
     files: Vec<String>,
-    /// Why the folder could not be read, or what is left out.
+    /// Error from reading the folder, or a note about entries that are not listed.
     note: Option<String>,
 }
 

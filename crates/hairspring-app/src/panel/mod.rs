@@ -32,7 +32,7 @@ impl Labelled for egui::Response {
 
 /// Tooltips of the rows of a panel.
 pub trait TipBeside {
-    /// Shows a tooltip beside the panel, where it covers no other row.
+    /// Shows a tooltip to the left or right of the panel, so that it covers no other row.
     fn tip_beside(self, ui: &Ui, text: &str) -> Self;
 }
 
@@ -50,9 +50,9 @@ impl TipBeside for egui::Response {
         }
         let row = Rect::from_x_y_ranges(ui.clip_rect().x_range(), self.rect.y_range());
         for mut tooltip in [Tooltip::for_enabled(&self), Tooltip::for_disabled(&self)] {
-            let beside = [RectAlign::LEFT_END, RectAlign::RIGHT_START, RectAlign::RIGHT_END];
+            let alignments = [RectAlign::LEFT_END, RectAlign::RIGHT_START, RectAlign::RIGHT_END];
             let popup = tooltip.popup.anchor(row).align(RectAlign::LEFT_START);
-            tooltip.popup = popup.align_alternatives(&beside);
+            tooltip.popup = popup.align_alternatives(&alignments);
             tooltip.show(|ui| {
                 // Otherwise the automatic size shrinks a tooltip whose text changes.
                 ui.set_max_width(ui.spacing().tooltip_width);

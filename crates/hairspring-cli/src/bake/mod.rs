@@ -144,11 +144,7 @@ impl Options {
         Ok((cache.samples()?, Some(cache)))
     }
 
-    /// Reads the scene, with the options that override it.
-    pub fn scene(&self, console: Console) -> Result<Scene, Fault> {
-        self.input.scene(console).map(|scene| self.overridden(scene))
-    }
-
+    /// Applies the options that override the scene.
     fn overridden(&self, mut scene: Scene) -> Scene {
         scene.solver.preroll = self.preroll.unwrap_or(scene.solver.preroll);
         scene
