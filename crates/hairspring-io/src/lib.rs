@@ -29,6 +29,7 @@ pub mod hair;
 pub mod makehuman;
 pub mod obj;
 pub mod pc2;
+mod picture;
 pub mod scene;
 pub mod tfx;
 pub mod tfxbone;

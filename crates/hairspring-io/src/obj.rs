@@ -44,7 +44,13 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
     for (line_number, line) in statements(&text) {
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => mesh.positions.push(vertex(&mut words, line_number)?),
+            Some("v") => {
+                mesh.positions.push(vertex(&mut words, line_number)?);
+                if let Some(color) = color(words) {
+                    mesh.colors.resize(mesh.positions.len() - 1, Vec3::ZERO);
+                    mesh.colors.push(color);
+                }
+            }
             Some("vt") => uvs.push(texture_coordinate(&mut words, line_number)?),
             Some("f" | "fo") => {
                 face.clear();
@@ -80,6 +86,9 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
     if vertex_uv.iter().any(|uv| *uv != u32::MAX) {
         vertex_uv.resize(mesh.positions.len(), u32::MAX);
         mesh.uvs = vertex_uv.iter().map(|uv| uvs.get(*uv as usize).copied().unwrap_or_default()).collect();
+    }
+    if !mesh.colors.is_empty() {
+        mesh.colors.resize(mesh.positions.len(), Vec3::ZERO);
     }
     mesh.parts = parts.finish(mesh.triangles.len());
     mesh.compute_normals();
@@ -234,6 +243,14 @@ impl<'a> Iterator for Statements<'a> {
 /// Reads the position of a vertex.
 fn vertex<'a>(words: &mut impl Iterator<Item = &'a str>, line: usize) -> Result<Vec3, Problem> {
     Ok(Vec3::from(numbers(words, line, "a vertex")?))
+}
+
+/// The color of a vertex, which some programs write after its position: three numbers from 0 to 1. Other numbers
+/// there, such as a weight, are not used.
+fn color<'a>(words: impl Iterator<Item = &'a str>) -> Option<Vec3> {
+    let numbers: Vec<f32> = words.map_while(|word| word.parse().ok()).take(4).collect();
+    let color = Vec3::from(<[f32; 3]>::try_from(numbers).ok()?);
+    (color.is_finite() && color.min_element() >= 0.0 && color.max_element() <= 1.0).then_some(color)
 }
 
 /// Reads a texture coordinate of one number or more.

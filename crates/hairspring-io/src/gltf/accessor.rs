@@ -2,6 +2,7 @@
 
 use super::json::{Accessor, Document, View, compressed};
 use crate::{Place, Problem, bytes::with_room};
+use glam::Vec3;
 use std::{borrow::Cow, cell::Cell};
 
 /// Numbers that may be read from a file of any size. An array that several objects share is read for each of
@@ -58,6 +59,18 @@ impl<'a> Buffers<'a> {
         let end = view.byte_offset.checked_add(view.byte_length);
         Ok(end.and_then(|end| self.stored[stored].get(view.byte_offset..end)))
     }
+}
+
+/// Reads the colors of accessor `index`, with or without opacity, which is left out.
+pub(super) fn colors(document: &Document, index: usize, buffers: &Buffers<'_>) -> Result<Vec<Vec3>, Problem> {
+    let rgb = |r: f64, g: f64, b: f64| Vec3::new(r as f32, g as f32, b as f32).clamp(Vec3::ZERO, Vec3::ONE);
+    Ok(if accessor(document, index, "colors")?.shape.components() == 4 {
+        let colors = components::<4>(document, index, buffers, "colors")?;
+        colors.into_iter().map(|[r, g, b, _]| rgb(r, g, b)).collect()
+    } else {
+        let colors = components::<3>(document, index, buffers, "colors")?;
+        colors.into_iter().map(|[r, g, b]| rgb(r, g, b)).collect()
+    })
 }
 
 /// Reads the elements of accessor `index`, which has `N` components, with normalized integers as fractions.

@@ -115,6 +115,8 @@ pub(super) struct Attributes {
     pub normal: Option<usize>,
     #[serde(rename = "TEXCOORD_0")]
     pub uv: Option<usize>,
+    #[serde(rename = "COLOR_0")]
+    pub color: Option<usize>,
     joints_0: Option<usize>,
     joints_1: Option<usize>,
     joints_2: Option<usize>,

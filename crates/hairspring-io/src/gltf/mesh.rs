@@ -1,7 +1,7 @@
 //! Joins the meshes of a glTF file to one mesh in the rest pose.
 
 use super::{
-    accessor::{Buffers, accessor, components},
+    accessor::{Buffers, accessor, colors, components},
     json::{self, Attributes, Document, Primitive, Target, compressed},
     skeleton::{Skeleton, SkinPlace},
 };
@@ -218,9 +218,18 @@ impl<'a> Build<'a> {
             let uvs = components::<2>(document, uvs, buffers, "texture coordinates")?;
             whole(uvs.len(), "texture coordinates")?;
             self.mesh.uvs.resize(first, Vec2::ZERO);
-            self.mesh.uvs.extend(uvs.into_iter().map(|uv| Vec2::from(uv.map(|x| x as f32))));
+            // v is downward from the upper edge in glTF.
+            self.mesh.uvs.extend(uvs.into_iter().map(|[u, v]| Vec2::new(u as f32, 1.0 - v as f32)));
         } else if !self.mesh.uvs.is_empty() {
             self.mesh.uvs.resize(first + count, Vec2::ZERO);
+        }
+        // Colors are not needed to draw or to simulate: those that cannot be read are left out.
+        let colors = primitive.attributes.color.and_then(|color| colors(document, color, buffers).ok());
+        if let Some(colors) = colors.filter(|colors| colors.len() == count) {
+            self.mesh.colors.resize(first, Vec3::ZERO);
+            self.mesh.colors.extend(colors);
+        } else if !self.mesh.colors.is_empty() {
+            self.mesh.colors.resize(first + count, Vec3::ZERO);
         }
         Ok((first, count))
     }

@@ -94,6 +94,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         in_range(text, from, &groom.look)?;
         in_range(text, from, &groom.effects)?;
         in_range(text, from, &groom.thicken)?;
+        maps(text, groom)?;
         if let Some(grow) = &groom.grow {
             let from = line_at(text, grow.span().start);
             in_range(text, from, &grow.get_ref().growth())?;
@@ -183,6 +184,25 @@ fn colored_once(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             let why =
                 "a look takes `melanin` or colors (`root_color`, `tip_color`), not both; remove one of them";
             return Err(Problem::line(line, why));
+        }
+    }
+    Ok(())
+}
+
+/// Checks the maps of a groom.
+fn maps(text: &str, groom: &GroomFile) -> Result<(), Problem> {
+    for (name, map) in groom.maps.all() {
+        let Some(map) = map else { continue };
+        let (line, file) = (line_at(text, map.span().start), map.get_ref());
+        let wrong = |expected: &str| Err(Problem::line(line, format!("the map `{name}` {expected}")));
+        if file.sources() != 1 {
+            return wrong("needs one of `texture`, `vertex_colors = true` and `values`");
+        }
+        if !(file.low.is_finite() && file.high.is_finite()) {
+            return wrong("needs finite numbers for `low` and `high`");
+        }
+        if name == "comb" && groom.grow.is_none() {
+            return wrong("is the direction of hair that grows; a `file` has its own");
         }
     }
     Ok(())

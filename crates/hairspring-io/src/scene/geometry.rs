@@ -27,9 +27,12 @@ pub(super) struct Asked<'a> {
     /// The colliders that push hair out before the scene begins.
     pushing: Vec<usize>,
     grooms: Vec<GroomGeometry<'a>>,
-    /// Radii that the materials of each groom set [m].
-    radii: Vec<Vec<Option<f32>>>,
+    /// Radii that the materials of each groom set [m], and their profiles.
+    radii: Vec<Vec<Radius>>,
 }
+
+/// The radius that a material sets [m], and its profile.
+type Radius = Option<(f32, Vec<f32>)>;
 
 /// Returns the geometry that `file`, parsed from `text`, describes.
 pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<Asked<'a>, Problem> {
@@ -61,8 +64,9 @@ pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<
 }
 
 /// The radii that these materials set. A group past the end uses the last.
-fn radii_of(materials: &[Material]) -> Vec<Option<f32>> {
-    let mut radii: Vec<_> = materials.iter().map(|m| m.radius).collect();
+fn radii_of(materials: &[Material]) -> Vec<Radius> {
+    let mut radii: Vec<_> =
+        materials.iter().map(|m| m.radius.map(|radius| (radius, m.radius_profile.clone()))).collect();
     while radii.len() > 1 && radii[radii.len() - 2] == radii[radii.len() - 1] {
         radii.pop();
     }

@@ -43,7 +43,7 @@ impl Reader<'_> {
         });
         let mut groom = match (&named.file, &named.grow) {
             (Some(file), _) => self.read_strands(named, file, place, skin.as_ref())?,
-            (None, Some(grow)) => self.grown(grow, body)?,
+            (None, Some(grow)) => self.grown(grow, &named.maps, body)?,
             // The check of the text has rejected this case already.
             (None, None) => Groom::default(),
         };
@@ -58,6 +58,7 @@ impl Reader<'_> {
                 SkinDistance::new(&groom, &skin.tree).and_then(|distance| distance.note(named.reverse));
             self.note(&self.resolve(file), note.into_iter().collect());
         }
+        self.apply_maps(named, &mut groom, body.map(|b| &b.mesh))?;
         if named.thicken.copies > 0 {
             groom.roots.clear();
             thicken(&mut groom, &named.thicken, body.map(|b| &b.mesh));
@@ -71,9 +72,9 @@ impl Reader<'_> {
         // simulated.
         for s in 0..groom.strand_count() {
             let material = materials.get(groom.group(s) as usize).or(materials.last());
-            if let Some(radius) = material.and_then(|m| m.radius) {
+            if let Some(radii) = material.and_then(|m| m.radii(groom.strand(s), groom.scale(s))) {
                 let points = groom.range(s);
-                groom.radii[points].fill(radius);
+                groom.radii[points].copy_from_slice(&radii);
             }
         }
         Ok(groom)

@@ -1,6 +1,7 @@
 //! The fields of a `[[groom]]`.
 
 use super::file::{FileName, OneOrMore, turn};
+use super::map_file::MapsFile;
 use crate::Axis;
 use glam::{Affine3A, Vec3};
 use hairspring::{
@@ -51,6 +52,12 @@ define_settings! {
         /// Styling effects of follow hairs.
         #[serde(default)]
         effects: Effects, "none", {table};
+        /// Parameters that vary over the scalp: `bend`, `damping`, `drag`, `friction`, `charge`, `global_shape`,
+        /// `radius`, `length`, `density`, `comb`.
+        #[serde(default)]
+        maps: MapsFile, "none", {
+            text "a table of maps; each has a `texture`, `vertex_colors = true` or `values`, and may have `channel`, `low` and `high`"
+        }, default "none";
         /// File of bones: each root binds to skin that follows one of its bones. Needs a skinned body.
         bones: Option<FileName>, "none", {text "`.tfxbone`"}, default "none";
     }
@@ -76,6 +83,7 @@ pub(super) struct GroomGeometry<'a> {
     colors: ColorSource,
     transform: Placement,
     guides: Guides,
+    maps: &'a MapsFile,
 }
 
 impl GroomFile {
@@ -90,6 +98,7 @@ impl GroomFile {
             colors: self.colors,
             transform: self.transform,
             guides: self.guides,
+            maps: &self.maps,
         }
     }
 

@@ -1,17 +1,22 @@
 //! `grow` of a `[[groom]]`: the skin of the body that hair grows on.
 
-use super::{Reader, groom_file::GrowFile, sentence::unknown};
+use super::{Reader, groom_file::GrowFile, map_file::MapsFile, sentence::unknown};
 use crate::Result;
 use glam::Vec3;
 use hairspring::{
     body::Body,
-    groom::{Groom, grow},
+    groom::{Groom, grow_along},
 };
 use toml::Spanned;
 
 impl Reader<'_> {
     /// Grows the hair that `named` describes.
-    pub(super) fn grown(&mut self, named: &Spanned<GrowFile>, body: Option<&Body>) -> Result<Groom> {
+    pub(super) fn grown(
+        &mut self,
+        named: &Spanned<GrowFile>,
+        maps: &MapsFile,
+        body: Option<&Body>,
+    ) -> Result<Groom> {
         let near = named.span().start;
         let file = named.get_ref();
         let Some(body) = body else {
@@ -44,7 +49,12 @@ impl Reader<'_> {
                 *allowed &= inside(mesh.corners(t).iter().sum::<Vec3>() / 3.0);
             }
         }
-        let groom = grow(mesh, &file.growth(), |t| allowed[t]);
+        let growth = file.growth();
+        let comb = self.comb_map(maps, growth.strands as usize, mesh)?;
+        let direction = |s: usize, t: usize, weights: Vec3, normal: Vec3| {
+            comb.as_ref().map_or(normal, |comb| comb.direction(s, (t, weights), normal))
+        };
+        let groom = grow_along(mesh, &growth, |t| allowed[t], direction);
         if groom.strand_count() == 0 {
             return Err(self.wrong(
                 near,

@@ -11,6 +11,8 @@ mod groom;
 mod groom_file;
 mod grow;
 mod hull_points;
+mod map_file;
+mod maps;
 mod material;
 mod motion;
 pub mod parameters;

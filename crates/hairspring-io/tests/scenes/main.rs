@@ -6,6 +6,7 @@ mod scenes;
 mod book;
 mod book_is_complete;
 mod book_states_the_definitions;
+mod maps_vary_parameters_over_the_scalp;
 mod props_move_by_their_own_keys;
 mod scene_file_errors_name_line_and_remedy;
 mod scene_files_give_the_scene_they_describe;

@@ -12,8 +12,11 @@ pub struct Mesh {
     /// Unit vertex normals; shape `[vertices]`. If a file has none, its reader computes them with
     /// [`Mesh::compute_normals`].
     pub normals: Vec<Vec3>,
-    /// Texture coordinates; shape `[vertices]`, or empty.
+    /// Texture coordinates, v upward from the lower edge of the texture; shape `[vertices]`, or empty.
     pub uvs: Vec<Vec2>,
+    /// Color of each vertex, 0 to 1, as the file has it: maps over the scalp use it, pictures do not; shape
+    /// `[vertices]`, or empty.
+    pub colors: Vec<Vec3>,
     /// Vertex indices of each triangle; shape `[triangles]`.
     pub triangles: Vec<[u32; 3]>,
     /// Named parts (groups, primitives). Each is a range of triangles; together they cover all triangles in
@@ -54,14 +57,19 @@ impl Mesh {
     }
 
     /// Appends the vertices, triangles and parts of `other`. If only one of the two meshes has parts, the
-    /// triangles of the other belong to no part. If only one has texture coordinates, those of the other are
-    /// 0.
+    /// triangles of the other belong to no part. If only one has texture coordinates or
+    /// colors, those of the other are 0.
     pub fn append(&mut self, other: Mesh) {
         let (vertices, triangles) = (self.positions.len(), self.triangles.len() as u32);
         if !(self.uvs.is_empty() && other.uvs.is_empty()) {
             self.uvs.resize(vertices, Vec2::ZERO);
             self.uvs.extend(other.uvs);
             self.uvs.resize(vertices + other.positions.len(), Vec2::ZERO);
+        }
+        if !(self.colors.is_empty() && other.colors.is_empty()) {
+            self.colors.resize(vertices, Vec3::ZERO);
+            self.colors.extend(other.colors);
+            self.colors.resize(vertices + other.positions.len(), Vec3::ZERO);
         }
         self.positions.extend(other.positions);
         self.normals.extend(other.normals);

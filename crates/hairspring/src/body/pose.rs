@@ -118,6 +118,7 @@ impl Body {
         retain_used(&mut mesh.positions, &used);
         retain_used(&mut mesh.normals, &used);
         retain_used(&mut mesh.uvs, &used);
+        retain_used(&mut mesh.colors, &used);
         if let Some(skin) = &mut self.skin {
             retain_used(&mut skin.joints, &used);
             retain_used(&mut skin.weights, &used);
@@ -181,12 +182,14 @@ mod tests {
             positions: (0..6).map(|i| Vec3::splat(i as f32)).collect(),
             normals: vec![Vec3::Y; 6],
             uvs: Vec::new(),
+            colors: (0..6).map(|i| Vec3::splat(i as f32)).collect(),
             triangles: vec![[0, 1, 2], [3, 4, 5], [5, 3, 4]],
             parts: vec![part("helper", 0..1), part("body", 1..3)],
         });
         body.keep_parts(|name| name == "body");
         assert_eq!(body.mesh.triangles, [[0, 1, 2], [2, 0, 1]]);
         assert_eq!(body.mesh.positions, [Vec3::splat(3.0), Vec3::splat(4.0), Vec3::splat(5.0)]);
+        assert_eq!(body.mesh.colors, body.mesh.positions);
         assert_eq!((body.mesh.normals.len(), body.mesh.parts[0].triangles.clone()), (3, 0..2));
     }
 }

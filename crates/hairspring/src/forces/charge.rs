@@ -19,6 +19,7 @@
 //! uncharged body. The hair of one groom does not repel that of another.
 
 use super::{HairField, StrandView};
+use crate::material::profile_at;
 use crate::math::{RigidTransform, find_keys};
 use crate::settings::define_settings;
 use glam::Vec3;
@@ -148,6 +149,21 @@ impl ChargedBall {
     }
 }
 
+/// The charge of a strand.
+pub(crate) struct LineCharge<'a> {
+    /// Charge per length [C/m].
+    pub per_length: f32,
+    /// Its multiplier from root to tip.
+    pub profile: &'a [f32],
+}
+
+impl LineCharge<'_> {
+    /// Charge per length at point `i` of `count` [C/m].
+    pub fn at(&self, i: usize, count: usize) -> f32 {
+        self.per_length * profile_at(self.profile, i as f64 / (count - 1) as f64) as f32
+    }
+}
+
 /// All charges that act on hair in a frame.
 pub(crate) struct Charges<'a> {
     pub balls: &'a [ChargedBall],
@@ -156,13 +172,14 @@ pub(crate) struct Charges<'a> {
 }
 
 impl Charges<'_> {
-    /// Applies the forces to a strand with a charge of `charge` per length [C/m].
-    pub fn add(&self, charge: f32, strand: &mut StrandView) {
+    /// Applies the forces to a strand.
+    pub fn add(&self, charge: &LineCharge, strand: &mut StrandView) {
+        let count = strand.point_count();
         let [start, end] = strand.roots().map(|root| root.translation);
         let explicit = 1.0 / (strand.frame.dt * strand.frame.dt);
         for (i, (x, _)) in strand.points().enumerate().skip(2) {
             // Acceleration in a field of 1 V/m.
-            let per_field = charge * strand.length(i) / strand.mass(i);
+            let per_field = charge.at(i, count) * strand.length(i) / strand.mass(i);
             for ball in self.balls {
                 let d = start + x - ball.centers[0];
                 let r = d.length().max(ball.radius);

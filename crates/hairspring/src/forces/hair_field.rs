@@ -12,7 +12,7 @@
 
 use super::{
     FrameMotion, StrandBatch, StrandView,
-    charge::{BREAKDOWN, COULOMB},
+    charge::{BREAKDOWN, COULOMB, LineCharge},
 };
 use crate::parallel::prelude::*;
 use glam::Vec3;
@@ -46,18 +46,17 @@ pub(crate) struct HairField {
 }
 
 impl HairField {
-    /// Computes the field. `charge` returns the charge of a strand per length [C/m], including all hairs that
-    /// it represents.
-    pub fn find(
+    /// Computes the field. `charge` returns the charge of a strand, including all hairs that it represents.
+    pub fn find<'c>(
         &mut self,
         strands: &mut StrandBatch,
         frame: &FrameMotion,
-        charge: impl Fn(usize) -> f32 + Sync,
+        charge: impl Fn(usize) -> LineCharge<'c> + Sync,
     ) {
         self.clear();
         strands.each(frame, &|strand| self.reach(strand));
         self.lay_out();
-        strands.each(frame, &|strand| self.load(charge(strand.strand), strand));
+        strands.each(frame, &|strand| self.load(&charge(strand.strand), strand));
         self.solve();
     }
 
@@ -102,11 +101,11 @@ impl HairField {
         self.charges.iter_mut().for_each(|charge| *charge.get_mut() = 0);
     }
 
-    /// Distributes the charge of a strand, `charge` per length [C/m], to the lattice.
-    fn load(&self, charge: f32, strand: &StrandView) {
-        let root = strand.roots()[0].translation;
+    /// Distributes the charge of a strand to the lattice.
+    fn load(&self, charge: &LineCharge, strand: &StrandView) {
+        let (root, count) = (strand.roots()[0].translation, strand.point_count());
         for (i, (x, _)) in strand.points().enumerate() {
-            let electrons = f64::from(charge) * f64::from(strand.length(i)) / ELECTRON;
+            let electrons = f64::from(charge.at(i, count)) * f64::from(strand.length(i)) / ELECTRON;
             for (node, weight) in self.around(root + x).into_iter().flatten() {
                 self.charges[node].fetch_add((electrons * f64::from(weight)) as i64, Relaxed);
             }

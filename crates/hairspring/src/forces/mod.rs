@@ -40,7 +40,7 @@ mod strand_view;
 pub mod tie;
 mod wind;
 
-pub(crate) use charge::Charges;
+pub(crate) use charge::{Charges, LineCharge};
 pub use force_field::ForceField;
 pub(crate) use hair_field::HairField;
 pub(crate) use manipulator::ActiveManipulator;

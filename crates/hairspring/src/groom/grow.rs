@@ -42,6 +42,33 @@ define_settings! {
 /// # Panics
 /// If a triangle names a vertex that does not exist or has no normal.
 pub fn grow(mesh: &Mesh, growth: &Growth, allowed: impl Fn(usize) -> bool) -> Groom {
+    grow_along(mesh, growth, allowed, |_, _, _, normal| normal)
+}
+
+/// Like [`grow()`], with a direction for each strand: `direction(k, t, weights, normal)` returns the unit vector along
+/// which strand `k` leaves the surface, at the barycentric coordinates `weights` of the triangle `t`.
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::{body::Mesh, groom::{Growth, grow_along}};
+///
+/// let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Z];
+/// let mut mesh = Mesh { positions, triangles: vec![[0, 2, 1]], ..Default::default() };
+/// mesh.compute_normals();
+/// let growth = Growth { strands: 100, fall: 0.0, ..Default::default() };
+/// let combed = grow_along(&mesh, &growth, |_| true, |_, _, _, normal| (normal + Vec3::X).normalize());
+/// let strand = combed.strand(0);
+/// assert!((strand[15] - strand[0]).normalize().distance((Vec3::Y + Vec3::X).normalize()) < 1e-5);
+/// ```
+///
+/// # Panics
+/// If a triangle names a vertex that does not exist or has no normal.
+pub fn grow_along(
+    mesh: &Mesh,
+    growth: &Growth,
+    allowed: impl Fn(usize) -> bool,
+    direction: impl Fn(usize, usize, Vec3, Vec3) -> Vec3,
+) -> Groom {
     let area = |t: usize| {
         let [a, b, c] = mesh.corners(t);
         0.5 * (b - a).cross(c - a).length() as f64
@@ -69,13 +96,14 @@ pub fn grow(mesh: &Mesh, growth: &Growth, allowed: impl Fn(usize) -> bool) -> Gr
             let normal = mesh.triangles[t].iter().zip(weights.to_array());
             let normal: Vec3 = normal.map(|(v, w)| mesh.normals[*v as usize] * w).sum();
             roots.push(RootBinding::new(t as u32, weights, corners, root));
-            strands.push(arc(root, normal.normalize_or(Vec3::Y), k, growth));
+            let along = direction(k, t, weights, normal.normalize_or(Vec3::Y));
+            strands.push(arc(root, along, k, growth));
         }
     }
     Groom { roots, ..Groom::from_strands(strands, DEFAULT_RADIUS) }
 }
 
-/// Returns the points of strand `k`, an arc that leaves `root` along `normal`.
+/// Returns the points of strand `k`, an arc that leaves `root` along the unit vector `normal`.
 fn arc(root: Vec3, normal: Vec3, k: usize, growth: &Growth) -> Vec<Vec3> {
     // A third low-discrepancy coordinate, independent of the two for the position.
     let shorter = (k as f64 * 0.618_033_988_749_895).fract() as f32;

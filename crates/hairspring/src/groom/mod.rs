@@ -18,13 +18,15 @@ mod grow;
 mod precision;
 mod sanitize;
 mod thicken;
+mod trim;
 
 pub use bind::{RootBinding, bind_roots, bind_roots_where};
 pub use curve::MortonCurve;
-pub use grow::{Growth, grow};
+pub use grow::{Growth, grow, grow_along};
 pub use precision::{Imprecise, MAX_COORDINATE, first_imprecise};
 pub use sanitize::{Repairs, sanitize};
 pub use thicken::{Thicken, thicken};
+pub use trim::{cut, keep_strands};
 
 use glam::{Vec2, Vec3};
 
@@ -85,11 +87,25 @@ pub struct StrandScale {
     pub damping: f32,
     /// Multiplier of the global shape's frequency; 0 or more.
     pub global_shape: f32,
+    /// Multiplier of the friction, which is at most 1; 0 or more.
+    pub friction: f32,
+    /// Multiplier of the static charge; 0 or more.
+    pub charge: f32,
+    /// Multiplier of the material's radius; above 0. A groom's own radii, which are used without it, are final.
+    pub radius: f32,
 }
 
 impl Default for StrandScale {
     fn default() -> Self {
-        Self { bend: 1.0, drag: 1.0, damping: 1.0, global_shape: 1.0 }
+        Self {
+            bend: 1.0,
+            drag: 1.0,
+            damping: 1.0,
+            global_shape: 1.0,
+            friction: 1.0,
+            charge: 1.0,
+            radius: 1.0,
+        }
     }
 }
 

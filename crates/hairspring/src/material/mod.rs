@@ -9,10 +9,14 @@
 //! ```
 
 mod global_shape;
+mod profile;
 
 pub use global_shape::GlobalShape;
+pub use profile::profile_at;
+pub(crate) use profile::varies;
 
 use crate::settings::{When, define_settings};
+use profile::{is_mass_profile, is_positive_profile, is_profile};
 
 /// Only integrators with bending use the bending parameters.
 const BENDS: When = When::IsNot("solver.integrator", &["ftl", "dftl"]);
@@ -22,6 +26,9 @@ define_settings! {
     ///
     /// The constants are those of human hair (Robbins 2012, *Chemical and Physical Behavior of Human Hair*).
     ///
+    /// A profile multiplies a parameter along the strand: values at equal spacing in arc length from root to tip,
+    /// linear in between (see [`profile_at`]).
+    ///
     /// Fields may be added: write `..Default::default()`. For an example, see [`material`](crate::material).
     #[derive(Clone, Debug, PartialEq)]
     pub struct Material {
@@ -30,6 +37,12 @@ define_settings! {
             when When::IsNot("solver.integrator", &["ftl", "dftl", "local-global"]);
         /// Fiber radius, which replaces the groom's. Human hair: 25e-6 to 50e-6.
         radius: Option<f32> = None, ["m"], {above 0}, default "the groom's own";
+        /// Multiplier of the radius along the strand, from root to tip: the natural taper of a hair that was never
+        /// cut is `[1.0, 0.9, 0.3]`. Mass, stiffness and the drawn width follow. A groom's own radii may have a taper
+        /// already, so the profile needs a radius.
+        radius_profile: Vec<f32> = vec![1.0], "factors", {
+            check |m| is_positive_profile(&m.radius_profile) => "1 to 64 numbers above 0"
+        }, when When::Given("material.radius");
         /// Density of the fiber. Dry human hair: 1300 to 1320.
         density: f32 = 1310.0, ["kg/m³"], {above 0};
         /// Distribution of mass along a strand: weights at equal spacing in arc length from root to tip, linear
@@ -56,8 +69,11 @@ define_settings! {
         /// Multiplier of the bending and twisting stiffness EI and GJ. The default is a single hair. Styled hair
         /// is also held by products and neighboring hairs, so presets use more.
         bend: f32 = 1.0, "factor", {0 or more}, when BENDS;
-        /// Bending stiffness at the tip as a fraction of that at the root.
-        bend_tip: f32 = 1.0, "factor", {0 or more}, when BENDS;
+        /// Multiplier of the bending and twisting stiffness along the strand, from root to tip: `[1.0, 0.5]` is half
+        /// as stiff at the tip.
+        bend_profile: Vec<f32> = vec![1.0], "factors", {
+            check |m| is_profile(&m.bend_profile) => "1 to 64 numbers, 0 or more"
+        }, when BENDS;
         /// Ratio of the short to the long axis of the fiber's cross-section; the area is kept. 1: round. Asian
         /// hair is about 0.9, African about 0.6. Only the rod model uses it.
         ///
@@ -68,12 +84,24 @@ define_settings! {
         /// With the default, the solver adds almost no damping, and in a head of hair, neighboring hairs absorb a
         /// swing within a second.
         damping: f32 = 0.01, ["s"], {0 or more}, when BENDS;
+        /// Multiplier of the damping along the strand, from root to tip.
+        damping_profile: Vec<f32> = vec![1.0], "factors", {
+            check |m| is_profile(&m.damping_profile) => "1 to 64 numbers, 0 or more"
+        }, when When::All(&[BENDS, When::Above0("material.damping")]);
         /// Multiplier of the air drag of a single, smooth fiber. In a scene, dense hair also shields itself from
         /// the air according to its density.
         drag: f32 = 1.0, "factor", {0 or more};
+        /// Multiplier of the air drag along the strand, from root to tip: `[1.0, 3.0]` makes tips follow the wind.
+        drag_profile: Vec<f32> = vec![1.0], "factors", {
+            check |m| is_profile(&m.drag_profile) => "1 to 64 numbers, 0 or more"
+        }, when When::Above0("material.drag");
         /// Static Coulomb friction coefficient against the body. Hair on skin has 0.1 to 0.3 along the scales, and
         /// more against them.
         friction: f32 = 0.3, "coefficient", {0 to 1};
+        /// Multiplier of the friction along the strand, from root to tip. The coefficient is at most 1 anywhere.
+        friction_profile: Vec<f32> = vec![1.0], "factors", {
+            check |m| is_profile(&m.friction_profile) => "1 to 64 numbers, 0 or more"
+        }, when When::Above0("material.friction");
         /// Ratio of kinetic to static friction. Kinetic friction acts on a strand that slides faster than a
         /// millimeter per second. Below 1, hair that comes loose keeps sliding, which may start with a jerk.
         friction_kinetic: f32 = 1.0, "fraction", {0 to 1}, when When::Above0("material.friction");
@@ -86,6 +114,10 @@ define_settings! {
         /// 6e-9, where the air at its surface breaks down. From 5e-10 on, a field of 100 kV/m lifts it against
         /// gravity.
         charge: f32 = 0.0, ["C/m"], {-1e-6 to 1e-6};
+        /// Multiplier of the charge along the strand, from root to tip: `[0.0, 1.0]` charges the tips.
+        charge_profile: Vec<f32> = vec![1.0], "factors", {
+            check |m| is_profile(&m.charge_profile) => "1 to 64 numbers, 0 or more"
+        }, when When::Not0("material.charge");
     }
 }
 
@@ -108,13 +140,6 @@ define_settings! {
     }
 }
 
-/// Returns whether the weights of a mass profile are valid.
-fn is_mass_profile(weights: &[f32]) -> bool {
-    let least = weights.iter().copied().fold(f32::INFINITY, f32::min);
-    let holds = |w: &f32| w.is_finite() && *w > 0.0 && *w <= least * 100.0;
-    (1..=64).contains(&weights.len()) && weights.iter().all(holds)
-}
-
 /// Names of the presets known to [`preset`].
 pub const PRESETS: [&str; 5] = ["straight", "wavy", "curly", "coily", "short-fur"];
 
@@ -129,7 +154,7 @@ pub fn preset(name: &str) -> Option<Material> {
         "wavy" => Material { bend: 4.0, damping: 0.015, ..base },
         "curly" => Material { bend: 8.0, damping: 0.02, ..base },
         "coily" => Material { bend: 16.0, damping: 0.025, ..base },
-        "short-fur" => Material { radius: Some(25e-6), bend: 1.0, bend_tip: 0.5, ..base },
+        "short-fur" => Material { radius: Some(25e-6), bend: 1.0, bend_profile: vec![1.0, 0.5], ..base },
         _ => return None,
     })
 }

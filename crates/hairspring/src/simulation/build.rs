@@ -1,7 +1,7 @@
 //! Builds tiles from a groom: rest shapes and the sag-free start.
 
 use super::{
-    Simulation, SimulationBuilder, cpu_solver::CpuSolver, layout::Order, manipulators::Manipulators,
+    Simulation, SimulationBuilder, along, cpu_solver::CpuSolver, layout::Order, manipulators::Manipulators,
     strand_model::StrandModel, strand_state::StrandState, teleport::Motion,
 };
 use crate::parallel::prelude::*;
@@ -74,6 +74,7 @@ impl Simulation {
         let model = StrandModel {
             strand: vec![[Row::default(); strand::ROWS]; tiles.len()],
             rest: vec![[Row::default(); rest::ROWS]; first as usize],
+            along: Vec::new(),
             rest_penetration: Vec::new(),
             tethers: Vec::new(),
             tensions: Default::default(),
@@ -113,12 +114,14 @@ impl Simulation {
         simulation.fill(colliders);
         let rest_penetration = simulation.authored_depths(colliders);
         let tethers = simulation.tethers();
+        let along = along::multipliers(&simulation.model);
         let springs = simulation.model.tiles.iter().any(|tile| tile.model == Elastic::Springs);
         let rows = |at: usize| simulation.state.points.iter().map(|rows| rows[at]).collect();
         let tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
         let model = Arc::make_mut(&mut simulation.model);
         model.start.coils = coils;
         (model.tensions, model.rest_penetration, model.tethers) = (tensions, rest_penetration, tethers);
+        model.along = along;
         simulation
     }
 
@@ -204,7 +207,7 @@ impl Simulation {
                     into.write_strand(&points, &shape, anchor, obstacles);
                     let radius = radii.iter().sum::<f32>() / radii.len() as f32;
                     let rows = &mut *into.strand;
-                    write_surface(rows, lane, material, scale.drag);
+                    write_surface(rows, lane, material, scale);
                     rows[strand::REYNOLDS].0[lane] = 2.0 * radius / AIR_KINEMATIC_VISCOSITY;
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
                     rows[strand::TWIST_RATIO].0[lane] = section.twist_ratio;
@@ -220,10 +223,10 @@ impl Simulation {
     }
 }
 
-/// Writes drag and friction of the strand in a lane, whose groom multiplies the drag by `scale`.
-pub(super) fn write_surface(rows: &mut StrandRows, lane: usize, material: &Material, scale: f32) {
-    rows[strand::DRAG].0[lane] = material.drag * scale * AIR_VISCOSITY;
-    rows[strand::FRICTION].0[lane] = material.friction;
+/// Writes drag and friction of the strand in a lane, with the multipliers of its groom.
+pub(super) fn write_surface(rows: &mut StrandRows, lane: usize, material: &Material, scale: StrandScale) {
+    rows[strand::DRAG].0[lane] = material.drag * scale.drag * AIR_VISCOSITY;
+    rows[strand::FRICTION].0[lane] = (material.friction * scale.friction).min(1.0);
     rows[strand::FRICTION_KINETIC].0[lane] = material.friction_kinetic;
 }
 
@@ -301,7 +304,7 @@ fn is_straight(points: &[Vec3]) -> bool {
 
 /// Radius at each point of strand `s` [m].
 fn radii(material: &Material, groom: &Groom, s: usize) -> Vec<f32> {
-    groom.radii[groom.range(s)].iter().map(|own| material.radius.unwrap_or(*own)).collect()
+    material.radii(groom.strand(s), groom.scale(s)).unwrap_or_else(|| groom.radii[groom.range(s)].to_vec())
 }
 
 /// The fiber of a strand that is solved in single precision.
@@ -318,12 +321,17 @@ fn fiber<'a>(
         density: material.density as f64,
         mass_profile: &material.mass_profile,
         young: (material.young * material.bend * scale.bend * section.bend) as f64,
-        tip: material.bend_tip as f64,
+        bend_profile: &material.bend_profile,
         flat: section.flat as f64,
         substep: super::step::substep_length(solver),
         // The matrix of the springs model includes damping, but accounting for it here would cost more
         // stiffness than rounding costs accuracy.
-        damping: if model == Elastic::Springs { 0.0 } else { (material.damping * scale.damping) as f64 },
+        damping: if model == Elastic::Springs {
+            0.0
+        } else {
+            let most = material.damping_profile.iter().copied().fold(0.0, f32::max);
+            (material.damping * scale.damping * most) as f64
+        },
         double: false,
         twist_ratio: (!matches!(model, Elastic::Straight | Elastic::Curvature))
             .then_some(section.twist_ratio as f64),

@@ -35,6 +35,7 @@ impl StrandSolver for CpuSolver {
             holds: &state.holds,
             rest: &model.rest,
             state: &mut state.points,
+            along: &model.along,
             history: &mut state.history,
             external_acceleration: &forces.external_acceleration,
             position_spring: &forces.position_spring,

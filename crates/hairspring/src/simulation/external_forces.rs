@@ -3,7 +3,9 @@
 use super::{Simulation, StepInput};
 use crate::{
     collide::FrameColliders,
-    forces::{Charges, ForceMask, FrameMotion, StrandBatch, StrandView, WindSampler, global_shape},
+    forces::{
+        Charges, ForceMask, FrameMotion, LineCharge, StrandBatch, StrandView, WindSampler, global_shape,
+    },
     math::RigidTransform,
     strand::frame_context::FrameContext,
     volume::Now,
@@ -71,11 +73,15 @@ impl Simulation {
             anisotropic_drag: &mut self.forces.anisotropic_drag,
             wind_delta: &mut self.forces.wind_delta,
         };
-        let charge_of = |strand: usize| self.model.material(strand).charge;
+        let charge_of = |strand: usize, hairs: f32| {
+            let material = self.model.material(strand);
+            let per_length = material.charge * self.model.groom.scale(strand).charge * hairs;
+            LineCharge { per_length, profile: &material.charge_profile }
+        };
         if charged {
             self.state.charged.iter_mut().for_each(|ball| ball.carry(carried));
             // Follow hairs have the charge of their guides.
-            let of_all = |strand: usize| charge_of(strand) * self.model.multiplicity[strand];
+            let of_all = |strand: usize| charge_of(strand, self.model.multiplicity[strand]);
             self.hair_field.find(&mut strands, &motion, of_all);
         }
         let air = input.air.moment(input.dt, &mut self.noise);
@@ -101,7 +107,7 @@ impl Simulation {
                 );
             }
             if charged {
-                charges.add(charge_of(s), strand);
+                charges.add(&charge_of(s, 1.0), strand);
             }
             for active in manipulators {
                 active.act(&bodies, strand, groom.range(s).len());

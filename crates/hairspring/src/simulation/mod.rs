@@ -19,6 +19,7 @@
 //! # Ok::<(), hairspring::simulation::BuildError>(())
 //! ```
 
+mod along;
 mod authored;
 mod build;
 mod builder;
@@ -148,6 +149,7 @@ impl Simulation {
         size_of_val(&self.state.roots[..])
             + size_of_val(&self.model.strand[..])
             + size_of_val(&self.model.rest[..])
+            + size_of_val(&self.model.along[..])
             + size_of_val(&self.state.points[..])
             + size_of_val(&self.model.rest_penetration[..])
             + size_of_val(&self.state.contact_age[..])

@@ -75,7 +75,6 @@ impl Simulation {
             let Some(alike) = hair.shown_first(k) else { continue };
             let strand = self.strand(place);
             let stride = strand.stride();
-            let damped = 1.0 + strand.damping() / h;
             let [start, end] = strand.local_roots();
             let mut x = m * start.lerp(end, fraction) + t;
             for j in 0..strand.particle_count() {
@@ -89,7 +88,11 @@ impl Simulation {
                     hair.inverse_length[i] = if length > 0.0 { length.recip() } else { 0.0 };
                     // The bending springs of the springs model do not act at its points, and their effect
                     // here is small.
-                    hair.bend[i] = if stride == 1 { alike * strand.bend(j) * damped } else { 0.0 };
+                    hair.bend[i] = if stride == 1 {
+                        alike * strand.bend(j) * (1.0 + strand.damping(j) / h)
+                    } else {
+                        0.0
+                    };
                     i += 1;
                 }
             }

@@ -7,7 +7,7 @@ use crate::{
     simd::lanes::Row,
     strand::{
         rest_shape::Start,
-        tile::{RestRows, StrandRows, TileLayout},
+        tile::{AlongRows, RestRows, StrandRows, TileLayout},
     },
 };
 use glam::Vec3;
@@ -32,6 +32,9 @@ pub(crate) struct StrandModel {
     pub(super) strand: Vec<StrandRows>,
     /// Rest shapes; shape `[points]` of all tiles.
     pub(super) rest: Vec<RestRows>,
+    /// Multipliers of the strands' constants at each particle; as long as `rest`, or empty if no material has a
+    /// profile of drag, damping or friction.
+    pub(super) along: Vec<AlongRows>,
     /// Authored depth of the segment that ends at each point, 0 or less [m]; as long as `rest`, or empty if no
     /// segment was authored inside a collider.
     pub(super) rest_penetration: Vec<Row>,

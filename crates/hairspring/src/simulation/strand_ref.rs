@@ -7,7 +7,7 @@
 use super::{Simulation, strand_model::StrandModel, strand_state::StrandState};
 use crate::{
     simd::lanes::{LANES, Row},
-    strand::tile::{Elastic, TileLayout, rest, root, segment_contact, springs, state, strand},
+    strand::tile::{Elastic, TileLayout, along, rest, root, segment_contact, springs, state, strand},
 };
 use glam::{DVec3, Quat, Vec3};
 
@@ -123,9 +123,11 @@ impl<'a> StrandRef<'a> {
         (self.root_rotation() * normal).as_dvec3()
     }
 
-    /// Relaxation time of bending [s].
-    pub fn damping(self) -> f32 {
-        self.constant(strand::DAMPING)
+    /// Relaxation time of bending at particle `i` [s].
+    pub fn damping(self, i: usize) -> f32 {
+        let share =
+            self.model.along.get(self.at(i)).map_or(1.0, |rows| rows[along::DAMPING].0[self.lane % LANES]);
+        self.constant(strand::DAMPING) * share
     }
 
     /// Reynolds number over the speed of the air across the fiber, d/ν [s/m].

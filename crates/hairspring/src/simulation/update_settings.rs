@@ -18,7 +18,7 @@ impl Simulation {
     ///
     /// | settings | in place |
     /// | --- | --- |
-    /// | material | `drag`, `friction`, `friction_kinetic`, `charge`, `global_shape`, `tether` |
+    /// | material | `drag`, `friction`, `friction_kinetic`, `charge`, `charge_profile`, `global_shape`, `tether` |
     /// | gravity | without `solver.sag_free` |
     /// | solver | `contact`, `segment_contacts`, `projection_iterations`, `quality`, `inertia`, `teleport_distance`, `global_shape` |
     ///
@@ -50,7 +50,7 @@ impl Simulation {
             for (lane, s) in model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
                 let s = *s as usize;
                 let material = &model.materials[(model.groom.group(s) as usize).min(materials.len() - 1)];
-                let scale = model.groom.scale(s).drag;
+                let scale = model.groom.scale(s);
                 write_surface(&mut model.strand[lane / LANES], lane % LANES, material, scale);
             }
             let tethers = self.tethers();
@@ -70,8 +70,10 @@ impl Simulation {
 
 /// Whether two materials give the same rest shapes.
 fn same_rest_shapes(old: &Material, new: &Material) -> bool {
-    let Material { drag, friction, friction_kinetic, charge, global_shape, tether, .. } = *new;
-    Material { drag, friction, friction_kinetic, charge, global_shape, tether, ..old.clone() } == *new
+    let Material { drag, friction, friction_kinetic, charge, tether, .. } = *new;
+    let (charge_profile, global_shape) = (new.charge_profile.clone(), new.global_shape.clone());
+    Material { drag, friction, friction_kinetic, charge, charge_profile, global_shape, tether, ..old.clone() }
+        == *new
 }
 
 /// Whether two solvers give the same rest shapes and the same arrays of state.

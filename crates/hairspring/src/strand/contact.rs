@@ -85,7 +85,7 @@ pub fn assemble_contact<S: Simd, const B: usize>(
     let k = shut.select(m_h2 * STRETCH, zero);
     let before = V3::load(simd, &tile.state[i][state::V..]) * F::splat(simd, step.h);
     let (slid, _) = along(before - carried).length_and_unit();
-    let rub = Friction::of(simd, step.h, tile.strand).secant(force, slid, k * STICK);
+    let rub = Friction::of(simd, step.h, tile, i).secant(force, slid, k * STICK);
     system.add_diagonal(1, Sym3::outer(normal, k - rub).add_identity(rub));
     system.add_force(
         1,

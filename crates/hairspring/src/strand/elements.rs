@@ -12,7 +12,7 @@ use super::{
     root::Root,
     scratch::Scratch,
     system::System,
-    tile::{Tile, rest, state},
+    tile::{Tile, along, rest, state},
 };
 use crate::simd::lanes::{F, Simd, V3, Work, load};
 
@@ -100,6 +100,10 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         walk.x += V3::load(simd, &edges[next]);
         let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
+        if let Some(rows) = tile.along.get(next) {
+            let damping = Root::<S>::fiber(simd, tile.strand).1 * load(simd, &rows[along::DAMPING]);
+            walk.at.damped = damping * (1.0 / walk.at.h) + 1.0;
+        }
         if phase + 1 < M::STRIDE {
             model.add(simd, &walk.at, scratch, tile, band);
             // Extra particles are not part of the fiber and have no drag.
@@ -133,7 +137,8 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         band.add_block(1, 1 + M::STRIDE, &-block.full());
         band.add_force(1, force);
         band.add_force(1 + M::STRIDE, -force);
-        let air = walk.half_drag * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
+        let air = tile.at_particle(walk.half_drag, next, along::DRAG)
+            * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
         Segment { u, mass, air }
     }
 

@@ -13,7 +13,7 @@
 //! Friction*, by a fraction and keeps their v_s. A discontinuous change at 5 µm/s, the smallest speed that
 //! [`super::contact`] distinguishes from rest, would release every point that vibrates.
 
-use super::tile::{StrandRows, strand};
+use super::tile::{Tile, along, strand};
 use crate::simd::lanes::{F, Simd, load};
 
 /// v_s of the formula: the speed at which friction is halfway from static to kinetic [m/s].
@@ -30,12 +30,12 @@ pub struct Friction<S: Simd> {
 }
 
 impl<S: Simd> Friction<S> {
-    /// Coefficients of the strands of a tile, in substeps of `h` [s].
+    /// Coefficients of the strands of a tile at particle `i`, in substeps of `h` [s].
     #[inline(always)]
-    pub fn of(simd: S, h: f32, rows: &StrandRows) -> Self {
+    pub fn of(simd: S, h: f32, tile: &Tile, i: usize) -> Self {
         Self {
-            holds: load(simd, &rows[strand::FRICTION]),
-            kinetic: load(simd, &rows[strand::FRICTION_KINETIC]),
+            holds: tile.at_particle(load(simd, &tile.strand[strand::FRICTION]), i, along::FRICTION),
+            kinetic: load(simd, &tile.strand[strand::FRICTION_KINETIC]),
             halfway: 1.0 / (h * SLIDES),
         }
     }

@@ -94,7 +94,7 @@ mod tests {
             density: 1310.0,
             mass_profile,
             young: 3.9e9,
-            tip: 1.0,
+            bend_profile: &[1.0],
             flat: 0.0,
             twist_ratio: Some(0.46),
             substep: 1.0 / 240.0,

@@ -197,7 +197,7 @@ fn project_particle<S: Simd>(
     (i, stride, e): (usize, usize, V3<S>),
     (at, link): (&Particle<S>, &SegmentLimit<S>),
 ) -> V3<S> {
-    let friction = Friction::of(simd, step.h, tile.strand);
+    let friction = Friction::of(simd, step.h, tile, i);
     let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
     let mut old = V3::load(simd, &tile.state[i][state::EDGE..]);
     if stride == 2 {

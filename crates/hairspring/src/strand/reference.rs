@@ -24,6 +24,8 @@ pub struct Strand {
     /// Rest turn of each joint in the frame (normal, binormal, tangent) of the segment before it.
     pub turn: Vec<DVec3>,
     pub tension: Vec<f64>,
+    /// Multipliers of drag and damping at each point.
+    pub along: Vec<[f64; 2]>,
     pub drag: f64,
     /// Reynolds number over speed [s/m].
     pub reynolds: f64,
@@ -138,7 +140,7 @@ impl Strand {
             let tangential = (0.5 * normal).min(0.7 + 2.7 * root);
             let across = DMat3::IDENTITY * normal - outer(u, u) * (normal - tangential);
             let around = 0.5 * (self.length[i.saturating_sub(1)] + self.length[i]);
-            let air = across * (around * self.drag);
+            let air = across * (around * self.drag * self.along[i][0]);
             a[i][i] += DMat3::IDENTITY * (self.mass[i] / (self.h * self.h)) + air * (1.0 / self.h);
             b[i] += (self.v[i] * self.h - self.moved) * (self.mass[i] / (self.h * self.h))
                 + air * (self.wind - self.moved / self.h)
@@ -190,7 +192,7 @@ impl Strand {
             for c in 0..if twists { 4 } else { 3 } {
                 let ratio = if c < 3 { 1.0 } else { TWIST_RATIO * curved_joint(self.turn[j].z) };
                 let stiffness = ratio * self.bend[j];
-                let implicit = stiffness * (1.0 + self.damping / self.h);
+                let implicit = stiffness * (1.0 + self.damping * self.along[j][1] / self.h);
                 // The linearized twist: its force has the gradient, its matrix the outer product of the
                 // gradient.
                 for p in 0..11 {

@@ -30,6 +30,7 @@ use super::{
         rod::{FOLDING, curved_joint},
     },
 };
+use crate::material::profile_at;
 use glam::{DVec3, Vec3};
 
 /// Largest |m|/B of a joint at the sag-free start [rad]. Beyond it, the linear moment no longer represents a
@@ -66,15 +67,15 @@ pub struct Fiber<'a> {
     pub mass_profile: &'a [f32],
     /// Young's modulus times the style's multiplier, at the root [Pa].
     pub young: f64,
-    /// Young's modulus at the tip, as a fraction of that at the root.
-    pub tip: f64,
+    /// Multiplier of Young's modulus along the strand, from root to tip.
+    pub bend_profile: &'a [f32],
     /// Relative additional bending stiffness in the plane of the frame's normal, ΔB/B.
     pub flat: f64,
     /// Twisting over bending stiffness, GJ/EI; `None` for a model without twist.
     pub twist_ratio: Option<f64>,
     /// Length of a substep [s].
     pub substep: f64,
-    /// Relaxation time of bending [s].
+    /// Largest relaxation time of bending along the strand [s].
     pub damping: f64,
     /// Whether the strand is solved in double precision.
     pub double: bool,
@@ -190,7 +191,7 @@ pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
     for j in 1..n - 1 {
         along += lengths[j - 1];
         let r = fiber.radii[j] as f64;
-        let young = fiber.young * (1.0 + (fiber.tip - 1.0) * along / total);
+        let young = fiber.young * profile_at(fiber.bend_profile, along / total);
         let ei = young * std::f64::consts::FRAC_PI_4 * r.powi(4);
         // The driven first segment is rigid. Its compliance is added to the first joint, so that the strand
         // bends like one clamped at its root.

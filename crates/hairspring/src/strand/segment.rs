@@ -221,7 +221,7 @@ pub fn resolve_segment_contact<S: Simd>(
             let carried = surface_displacement(simd, pose, e.mul_add(place.at, a));
             let slide = (out - old).mul_add(place.at, inner.way) - carried;
             let tangent = slide - place.normal * place.normal.dot(slide);
-            let hold = Friction::of(simd, step.h, tile.strand).share(depth, tangent.dot(tangent));
+            let hold = Friction::of(simd, step.h, tile, i).share(depth, tangent.dot(tangent));
             out = V3::select(first, link.clamp(out - tangent * hold), out);
         }
         q = V3::select(cuts, out, q);
@@ -329,7 +329,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     let k = shut.select(m_h2 * STRETCH, zero);
     let before = faster.mul_add(at, v) * h;
     let (slid, _) = along(before - carried).length_and_unit();
-    let rub = Friction::of(simd, step.h, tile.strand).secant(force, slid, k * STICK);
+    let rub = Friction::of(simd, step.h, tile, i).secant(force, slid, k * STICK);
     let block = Sym3::outer(normal, k - rub).add_identity(rub);
     let push = normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub;
     let share = one - at;

@@ -21,8 +21,8 @@ use super::{
     substitute::substitute,
     system::System,
     tile::{
-        Elastic, RestRows, RootRows, StateRows, StrandRows, Tile, TileLayout, TileRange, rest, root, state,
-        strand,
+        AlongRows, Elastic, RestRows, RootRows, StateRows, StrandRows, Tile, TileLayout, TileRange, rest,
+        root, state, strand,
     },
     truss::ASIDE,
 };
@@ -285,6 +285,7 @@ proptest! {
         wind in vector(2.0),
         drag in 0.0..20.0,
         damping in 0.0..0.02,
+        more in proptest::array::uniform2(0.0f32..0.5),
     ) {
         let n = steps.len() + 1;
         let h = 1.0 / 240.0;
@@ -315,6 +316,7 @@ proptest! {
             bend: (0..n).map(|i| if i == 0 || i + 1 == n { 0.0 } else { 4e-6f32 as f64 }).collect(),
             turn,
             tension: vec![tension; n],
+            along: (0..n).map(|i| [1.0 + more[0] * i as f32, 1.0 + more[1] * i as f32].map(f64::from)).collect(),
             drag: drag * mass / 0.008, reynolds: 4.6, damping, wind, moved, h,
             gravity: DVec3::new(0.0, -9.81, 0.0),
             length: length.iter().copied().chain([0.0]).collect(),
@@ -390,6 +392,8 @@ pub fn rows(s: &reference::Strand) -> ((RootRows, StrandRows), Vec<RestRows>, Ve
 fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, Vec<DVec3>) {
     let n = s.x.len();
     let ((root_rows, strand_rows), rest_rows, mut state_rows, normals) = rows(s);
+    let along_rows: Vec<AlongRows> =
+        s.along.iter().map(|at| [at[0], at[1], 1.0].map(|x| Row([x as f32; LANES]))).collect();
     let mut memory = Memory::default();
     let mut scratch = memory.scratch(n);
     let layout = TileLayout { first: 0, points: rest_rows.len() as u32, model, flat: false, double };
@@ -399,6 +403,7 @@ fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, V
         strand: &[strand_rows],
         rest: &rest_rows,
         state: &mut state_rows,
+        along: &along_rows,
         contact_age: &mut [Row::default()],
         holds: &[Vec::new()],
         ..TileRange::default()

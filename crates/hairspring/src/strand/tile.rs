@@ -5,7 +5,7 @@
 //! are padded with points of rest length zero, which coincide with the tip and carry no force.
 
 use super::tile_arrays::{access, tile_arrays};
-use crate::simd::lanes::Row;
+use crate::simd::lanes::{F, Row, Simd, load};
 
 /// Rows of state a point.
 pub mod state {
@@ -46,6 +46,18 @@ pub mod rest {
     pub const EXPOSURE: usize = 8;
     /// Rows a point.
     pub const ROWS: usize = 9;
+}
+
+/// Rows of the multipliers of a strand's constants at each particle [1].
+pub mod along {
+    /// Of `strand::DRAG`.
+    pub const DRAG: usize = 0;
+    /// Of `strand::DAMPING`.
+    pub const DAMPING: usize = 1;
+    /// Of `strand::FRICTION`.
+    pub const FRICTION: usize = 2;
+    /// Rows a point.
+    pub const ROWS: usize = 3;
 }
 
 /// Rows of the motion of a strand's root in a frame.
@@ -198,6 +210,8 @@ pub type StrandRows = [Row; strand::ROWS];
 pub type RestRows = [Row; rest::ROWS];
 /// The state of one point of eight strands.
 pub type StateRows = [Row; state::ROWS];
+/// The multipliers at one particle of eight strands.
+pub type AlongRows = [Row; along::ROWS];
 
 /// The contact of the segment that ends at one point, for eight strands.
 pub type SegmentContactRows = [Row; segment_contact::ROWS];
@@ -222,6 +236,8 @@ tile_arrays! {
         /// Rest shapes, with the points of the longest strand; as long as `state`.
         rest: shared RestRows,
         state: unique StateRows,
+        /// Multipliers of the strands' constants, see `along`; not in use if no material has such a profile.
+        along: shared AlongRows,
         /// Only for the second-order integrator.
         history: unique HistoryRows,
         /// External acceleration, constant over the frame [m/s²]. For a point with a position spring, it holds
@@ -243,6 +259,17 @@ tile_arrays! {
         segment_contacts: unique SegmentContactRows,
         /// Largest distance of each point from its root [m]; not in use if there are no tethers.
         tether_lengths: shared Row,
+    }
+}
+
+impl Tile<'_> {
+    /// Returns a constant of the strands at particle `i`: `value` times the row `row` of `along`.
+    #[inline(always)]
+    pub fn at_particle<S: Simd>(&self, value: F<S>, i: usize, row: usize) -> F<S> {
+        match self.along.get(i) {
+            Some(rows) => value * load(value.simd, &rows[row]),
+            None => value,
+        }
     }
 }
 

@@ -28,7 +28,8 @@ impl ForceField for Pull {
         let rate = 1.0 / strand.dt();
         let last = (authored.len() - 1) as f32;
         for (i, p) in authored.iter().enumerate().skip(2) {
-            let omega = TAU * self.shape.pull * 1.0 * (1.0 + (self.shape.tip - 1.0) * (i as f32 / last));
+            let omega =
+                TAU * self.shape.pull * 1.0 * (1.0 + (self.shape.profile[1] - 1.0) * (i as f32 / last));
             let [from, to] = [start, end].map(|root| root.rotation * (*p - authored[0]));
             strand.add_position_spring(i, [from, to], omega * omega);
             strand.add_velocity_drag(i, (way + (to - from)) * rate, 2.0 * self.shape.damping * omega);
@@ -38,8 +39,8 @@ impl ForceField for Pull {
 
 #[test]
 fn a_custom_global_shape_has_the_same_bits() {
-    let shape = GlobalShape { pull: 2.0, tip: 0.5, damping: 0.7 };
-    let material = Material { global_shape: shape, ..Material::default() };
+    let shape = GlobalShape { pull: 2.0, profile: vec![1.0, 0.5], damping: 0.7 };
+    let material = Material { global_shape: shape.clone(), ..Material::default() };
     let mut built_in = simulation(10, material, Solver::default());
     let mut custom = simulation(10, Material::default(), Solver::default());
     let id = custom.add_force(Arc::new(Pull { groom: groom(10), shape }));

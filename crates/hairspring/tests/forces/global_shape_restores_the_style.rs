@@ -63,7 +63,7 @@ impl Brush {
 }
 
 fn global_shape(pull: f32, tip: f32) -> GlobalShape {
-    GlobalShape { pull, tip, damping: 0.5 }
+    GlobalShape { pull, profile: vec![1.0, tip], damping: 0.5 }
 }
 
 /// g/ω² at `pull` [Hz].

@@ -42,7 +42,7 @@ use crate::{
         root::Root,
         scratch::{Memory, Scratch},
         system::System,
-        tile::{Tile, springs, state, strand},
+        tile::{Tile, along, springs, state, strand},
     },
 };
 use fearless_simd::Level;
@@ -137,7 +137,8 @@ pub fn run(level: Level, frame: &FrameContext, tile: &mut Tile, memory: &mut Mem
 /// `truss`) [N/m].
 #[inline(always)]
 pub fn brace<S: Simd>(simd: S, h: f32, tile: &Tile, point: usize) -> F<S> {
-    let damped = load(simd, &tile.strand[strand::DAMPING]) * (1.0 / h) + 1.0;
+    let damping = tile.at_particle(load(simd, &tile.strand[strand::DAMPING]), point, along::DAMPING);
+    let damped = damping * (1.0 / h) + 1.0;
     load(simd, &tile.rest[point][springs::BRACE]) * damped
 }
 

@@ -1,0 +1,51 @@
+//! Multipliers along the strands: the profiles of drag, damping and friction at each particle.
+
+use super::strand_model::StrandModel;
+use crate::{
+    material::{Material, profile_at, varies},
+    simd::lanes::{LANES, Row},
+    strand::tile::{AlongRows, along},
+};
+use glam::Vec3;
+
+/// Returns the multipliers at every particle, see `along`; empty if no material has such a profile.
+pub(super) fn multipliers(model: &StrandModel) -> Vec<AlongRows> {
+    let profiled =
+        |m: &Material| [&m.drag_profile, &m.damping_profile, &m.friction_profile].map(|p| varies(p));
+    if model.materials.iter().all(|material| profiled(material) == [false; 3]) {
+        return Vec::new();
+    }
+    let mut rows = vec![[Row([1.0; LANES]); along::ROWS]; model.rest.len()];
+    for (place, s) in model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
+        let (s, tile) = (*s as usize, model.tiles[place / LANES]);
+        let material = model.material(s);
+        // Friction is at most 1 anywhere.
+        let most = 1.0 / (material.friction * model.groom.scale(s).friction).clamp(f32::MIN_POSITIVE, 1.0);
+        let stride = tile.model.stride();
+        let ends: Vec<f64> = arc_lengths(model.groom.strand(s));
+        let whole = ends[ends.len() - 1].max(1e-9);
+        for particle in 0..=(ends.len() - 1) * stride {
+            // Extra particles are between two points.
+            let (point, part) = (particle / stride, (particle % stride) as f64 / stride as f64);
+            let next = ends[(point + 1).min(ends.len() - 1)];
+            let at = (ends[point] + (next - ends[point]) * part) / whole;
+            let rows = &mut rows[tile.first as usize + particle];
+            let value = |profile: &[f32]| profile_at(profile, at) as f32;
+            rows[along::DRAG].0[place % LANES] = value(&material.drag_profile);
+            rows[along::DAMPING].0[place % LANES] = value(&material.damping_profile);
+            rows[along::FRICTION].0[place % LANES] = value(&material.friction_profile).min(most);
+        }
+    }
+    rows
+}
+
+/// Returns the length of hair from the root to each point [m].
+fn arc_lengths(points: &[Vec3]) -> Vec<f64> {
+    let segments = points.windows(2).map(|w| f64::from(w[0].distance(w[1])));
+    std::iter::once(0.0)
+        .chain(segments.scan(0.0, |sum, length| {
+            *sum += length;
+            Some(*sum)
+        }))
+        .collect()
+}
