@@ -61,6 +61,7 @@ pub struct Simulation {
 
 /// One material, or a list of them.
 #[derive(FromPyObject)]
+#[expect(clippy::large_enum_variant, reason = "it lives for one call")]
 enum Materials {
     One(Material),
     Many(Vec<Material>),

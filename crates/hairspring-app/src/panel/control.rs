@@ -153,16 +153,18 @@ pub fn control(
             let mut profile: Vec<f64> =
                 now.and_then(toml::Value::as_array).into_iter().flatten().filter_map(as_number).collect();
             let mut changed = false;
+            // Mass and radius are above 0 everywhere.
+            let least = if ["mass_profile", "radius_profile"].contains(&parameter.name) { 0.01 } else { 0.0 };
             for x in &mut profile {
-                let weight = DragValue::new(x).speed(0.02).range(0.01..=100.0).max_decimals(2);
-                changed |= ui.add(weight).labelled(ui, name).changed();
+                let value = DragValue::new(x).speed(0.02).range(least..=100.0).max_decimals(2);
+                changed |= ui.add(value).labelled(ui, name).changed();
             }
-            if profile.len() < 8 && ui.small_button("+").tip_beside(ui, "Add a weight at the tip").clicked() {
+            if profile.len() < 8 && ui.small_button("+").tip_beside(ui, "Add a value at the tip").clicked() {
                 profile.push(profile.last().copied().unwrap_or(1.0));
                 changed = true;
             }
             if profile.len() > 1
-                && ui.small_button("-").tip_beside(ui, "Remove the weight at the tip").clicked()
+                && ui.small_button("-").tip_beside(ui, "Remove the value at the tip").clicked()
             {
                 profile.pop();
                 changed = true;

@@ -134,7 +134,7 @@ pub enum Kind {
         /// Maximum absolute value of each.
         reach: f64,
     },
-    /// Weights from root to tip.
+    /// Values from root to tip.
     Profile,
 }
 
@@ -204,8 +204,16 @@ impl Parameter {
 
     /// Whether the parameter determines hair, body or motion. Changing it restarts the scene.
     pub fn is_geometry(&self) -> bool {
-        const NAMES: [&str; 7] =
-            ["style", "strands", "guides", "motion", "radius", "solver.collide_body", "solver.preroll"];
+        const NAMES: [&str; 8] = [
+            "style",
+            "strands",
+            "guides",
+            "motion",
+            "radius",
+            "radius_profile",
+            "solver.collide_body",
+            "solver.preroll",
+        ];
         const TABLES: [&str; 5] = ["grow", "thicken", "transform", "clip", "body"];
         NAMES.contains(&self.name) || self.name.split_once('.').is_some_and(|(t, _)| TABLES.contains(&t))
     }

@@ -33,7 +33,7 @@ pub const ALL: &[Parameter] = parameters! {
         Material "preset", "Material", Kind::Choice;
         Material "tether", "Tether", number(0.0, 3.0);
         Material "global_shape.pull", "Global shape", number(0.0, 20.0);
-        Material "global_shape.tip", "… at the tip", number(0.0, 2.0);
+        Material "global_shape.profile", "… profile", Kind::Profile;
         Material "global_shape.damping", "… damping", number(0.0, 4.0);
         Groom "effects.clump", "Clump", Kind::Bounded;
         Groom "effects.curl_radius", "Curl radius", number(0.0, 0.02);
@@ -46,8 +46,9 @@ pub const ALL: &[Parameter] = parameters! {
     Stiffness {
         Material "model", "Model", Kind::Choice;
         Material "bend", "Bending", scale(0.01, 1000.0);
-        Material "bend_tip", "… at the tip", number(0.0, 2.0);
+        Material "bend_profile", "… profile", Kind::Profile;
         Material "damping", "Damping", number(0.0, 0.2);
+        Material "damping_profile", "… profile", Kind::Profile;
         Material "flatness", "Flatness", Kind::Bounded;
         Material "young", "Young's modulus", scale(1e8, 1e11);
         Material "shear", "Shear modulus", scale(1e7, 1e11);
@@ -57,6 +58,7 @@ pub const ALL: &[Parameter] = parameters! {
         Material "density", "Density", number(100.0, 5000.0);
         Material "mass_profile", "Mass profile", Kind::Profile;
         Material "radius", "Fiber radius", Kind::Maybe { min: 1e-5, max: 2e-4, from: 3.5e-5, without: "from the groom" };
+        Material "radius_profile", "… profile", Kind::Profile;
     }
     Motion {
         Groom "motion", "Built-in motion", Kind::Switch;
@@ -77,13 +79,16 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "wind_occlusion.hair", "Hair occlusion", number(0.0, 300.0);
         Scene "wind_occlusion.reach", "Wake length", number(0.05, 3.0);
         Material "drag", "Drag", number(0.0, 5.0);
+        Material "drag_profile", "… profile", Kind::Profile;
         Material "charge", "Static charge", number(-1e-8, 1e-8);
+        Material "charge_profile", "… profile", Kind::Profile;
     }
     Collision {
         Scene "solver.collide_body", "Body collision", Kind::Switch;
         Scene "solver.contact", "Contact method", Kind::Choice;
         Scene "solver.segment_contacts", "Segment contacts", Kind::Switch;
         Material "friction", "Friction", Kind::Bounded;
+        Material "friction_profile", "… profile", Kind::Profile;
         Material "friction_kinetic", "… kinetic", Kind::Bounded;
         Scene "solver.teleport_distance", "Teleport distance", scale(0.05, 10.0);
     }

@@ -35,7 +35,7 @@ fn groom(maps: &str) -> Groom {
 
 /// The error of a scene that is refused.
 fn refused(folder: &tempfile::TempDir, text: &str) -> String {
-    read(folder.path(), text).err().expect("the scene is accepted").to_string()
+    read(folder.path(), text).expect_err("the scene is accepted").to_string()
 }
 
 fn made() -> tempfile::TempDir {
@@ -99,8 +99,8 @@ fn each_parameter_follows_its_map() {
     let thin = groom(&format!("radius = {map}"));
     assert_eq!([0, 5, 10].map(|k| thin.radii[k] / plain.radii[k]), [0.25, 1.0, 2.0]);
     // Density keeps a share of the strands, and a length of 0 removes a strand.
-    assert_eq!(groom("density = { values = \"three.txt\", low = -0.25, high = 0.75 }").strand_count(), 2);
-    assert_eq!(groom("length = { values = \"three.txt\", low = -0.1, high = 0.3 }").strand_count(), 3);
+    assert_eq!(groom("density = { values = \"three.txt\" }").strand_count(), 2);
+    assert_eq!(groom("length = { values = \"three.txt\", low = -0.25, high = 0.75 }").strand_count(), 2);
 }
 
 /// A radius of the material is multiplied too, in what is drawn and in what is simulated; a profile as well.
@@ -156,7 +156,8 @@ fn grown_hair_leaves_the_skin_as_its_map_combs_it() {
     );
     assert!(grown("comb = { texture = \"none.png\" }").into_iter().all(|d| near(d, Vec3::Y)));
     // A map of length cuts hair that grows, and one of density thins it evenly.
-    assert_eq!(grown("density = { vertex_colors = true, channel = \"blue\", low = 0.5 }").len(), 20);
+    let kept = grown("density = { vertex_colors = true, channel = \"blue\", low = 0.5 }").len();
+    assert!((18..=22).contains(&kept), "{kept} of 40");
 }
 
 #[test]
