@@ -32,6 +32,8 @@ class Groom:
         stiffness: ArrayLike | None = None,
         damping: ArrayLike | None = None,
         drag: ArrayLike | None = None,
+        friction: ArrayLike | None = None,
+        charge: ArrayLike | None = None,
     ) -> Groom: ...
     @staticmethod
     def read(path: _Path, *, scale: float | None = None, up: str | None = None) -> Groom: ...

@@ -26,6 +26,8 @@ class MovingGroom:
     colors: np.ndarray | None = None
     guides: np.ndarray | None = None
     guide_weights: np.ndarray | None = None
+    materials: list[dict] = field(default_factory=list)
+    """The settings of the material of each group, by name."""
 
     @property
     def counts(self) -> np.ndarray:

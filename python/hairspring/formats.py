@@ -21,7 +21,7 @@ class Curves:
     guides: np.ndarray | None = None
     guide_weights: np.ndarray | None = None
     factors: dict[str, np.ndarray] = field(default_factory=dict)
-    """Factors of the material for each strand: `stiffness`, `damping`, `drag`; [strands], float32."""
+    """Factors of the material for each strand: those of `FACTORS`; [strands], float32."""
     notes: list[str] = field(default_factory=list)
 
 
@@ -42,14 +42,16 @@ class MovingMesh:
     rate: float = 24.0
     """Frames per second of `frames` [Hz]."""
     notes: list[str] = field(default_factory=list)
+    colors: np.ndarray | None = None
+    """[vertices, 3], float32, 0 to 1."""
 
 
 class FormatError(Exception):
     """A file that cannot be read or written: one sentence without the name of the file."""
 
 
-FACTORS = ("stiffness", "damping", "drag")
-"""Names of the attributes that are factors of the material for each strand."""
+FACTORS = ("stiffness", "damping", "drag", "friction", "charge", "density")
+"""Names of the attributes with a number for each strand: factors of the material, and the share of strands that is kept."""
 
 MAX_POSITIONS = 150_000_000
 """Largest number of vertex positions of a motion: 1,500 frames of 100,000 vertices."""

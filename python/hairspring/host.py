@@ -43,11 +43,12 @@ def read_groom(path: str, scale: float | None, up: str | None):
 
 
 def read_body(path: str, scale: float | None, up: str | None):
-    """Returns vertices, triangles, texture coordinates or None, parts, frames or None, their rate, whether the unit is known,
-    and notes."""
+    """Returns vertices, triangles, texture coordinates or None, colors of the vertices or None, parts, frames or None, their rate,
+    whether the unit is known, and notes."""
     file = Path(path)
     read = _module(file).read_mesh(file, scale, up)
-    return read.vertices, read.triangles, read.uvs, read.parts, read.frames, read.rate, _stated(file, scale), read.notes
+    known = _stated(file, scale)
+    return read.vertices, read.triangles, read.uvs, read.colors, read.parts, read.frames, read.rate, known, read.notes
 
 
 def write_cache(path: str, fps: float, first_frame: float, frames: int, source: str, over: str | None, grooms: list[dict]):

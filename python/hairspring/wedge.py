@@ -185,7 +185,7 @@ def run_on_ray(all_tasks: list[dict], address: str, retries: int, report) -> Non
         import ray
     except ImportError:
         raise SystemExit("hairspring wedge: ray is not installed; run `pip install 'hairspring[ray]'`") from None
-    ray.init(address=None if address == "local" else address, log_to_driver=False, include_dashboard=False)
+    ray.init(address=address, log_to_driver=False, include_dashboard=False)
     remote = ray.remote(max_retries=retries, retry_exceptions=True)(run_variant)
     waiting = {remote.remote(task): task for task in all_tasks}
     while waiting:

@@ -19,6 +19,17 @@ def test_examples_run(code, capsys):
     exec(compile(code, "example", "exec"), {})
 
 
+def test_the_tutorial_runs_and_draws_its_plots(tmp_path, monkeypatch):
+    pytest.importorskip("matplotlib")
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "docs/tutorial/python.md").read_text()
+    session = {}
+    for code in re.findall(r"```python\n(.*?)```", text, re.S):
+        exec(compile(code, "tutorial", "exec"), session)
+    drawn = {path.stem for path in tmp_path.glob("*.png")}
+    assert drawn == set(re.findall(r"pictures/tutorial/python-(\w+)\.png", text)) and len(drawn) == 4
+
+
 def test_type_stubs_match_the_module(tmp_path):
     pytest.importorskip("mypy")
     import subprocess

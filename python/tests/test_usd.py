@@ -5,7 +5,7 @@ import pytest
 
 pytest.importorskip("pxr")
 from conftest import shot, tuft
-from pxr import Gf, Sdf, Usd, UsdGeom, UsdSkel, UsdValidation, Vt
+from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdSkel, UsdValidation, Vt
 
 import hairspring as hs
 from hairspring import usd
@@ -70,6 +70,93 @@ def test_factors_of_the_material_are_read(tmp_path):
     np.testing.assert_allclose(factors["stiffness"], stiff, rtol=1e-6)
     np.testing.assert_allclose(factors["drag"], 3.0)
     np.testing.assert_allclose(factors["damping"], 1.0)
+
+
+def test_a_density_mask_thins_the_strands(tmp_path):
+    points, offsets = tuft(strands=400)
+    stage = new_stage(tmp_path / "a.usda")
+    curves = define_curves(stage, "/hair", points, offsets)
+    density = np.repeat([0.0, 0.25, 1.0, 1.0], 100).astype(np.float32)
+    UsdGeom.PrimvarsAPI(curves.GetPrim()).CreatePrimvar("density", Sdf.ValueTypeNames.FloatArray, "uniform").Set(
+        Vt.FloatArray.FromNumpy(density)
+    )
+    stage.Save()
+    groom = hs.Groom.read(tmp_path / "a.usda")
+    kept = len(groom.offsets) - 1
+    assert 222 <= kept <= 228, kept
+    np.testing.assert_allclose(groom.strand(kept - 1)[0], points[offsets[399]], atol=1e-6)
+
+
+def test_colors_of_a_mesh_are_a_map(tmp_path):
+    stage = new_stage(tmp_path / "body.usda")
+    mesh = UsdGeom.Mesh.Define(stage, "/skin")
+    mesh.CreatePointsAttr([(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)])
+    mesh.CreateFaceVertexCountsAttr([4])
+    mesh.CreateFaceVertexIndicesAttr([0, 1, 2, 3])
+    color = UsdGeom.PrimvarsAPI(mesh.GetPrim()).CreatePrimvar("displayColor", Sdf.ValueTypeNames.Color3fArray, "vertex")
+    color.Set([(0, 0, 0), (1, 0, 0), (1, 0, 0), (0, 0, 0)])
+    stage.Save()
+    scene = tmp_path / "a.toml"
+    scene.write_text(
+        '[body]\nfile = "body.usda"\n[[groom]]\ngrow = { strands = 300 }\nguides = 10\n'
+        '[groom.maps]\ndensity = { vertex_colors = true, channel = "red" }\n'
+    )
+    groom = hs.Scene.read(scene).grooms[0]
+    roots = groom.points[groom.offsets[:-1]]
+    assert 130 < len(roots) < 170 and (roots[:, 0] > 0).sum() > 2 * (roots[:, 0] < 0).sum()
+
+
+def test_the_physics_material_is_written_and_read(tmp_path, program):
+    scene = tmp_path / "a.toml"
+    scene.write_text(
+        '[builtin]\nstrands = 60\nguides = 20\nmaterial = "m"\n'
+        "[material.m]\nbend = 2.5\nradius = 4e-5\ndensity = 1200\nfriction = 0.4\nfriction_kinetic = 0.5\n"
+    )
+    code, _, error = program("bake", scene, "-o", tmp_path / "hair.usda", "--frames", "1-2")
+    assert code == 0, error
+    stage = Usd.Stage.Open(str(tmp_path / "hair.usda"))
+    prim = next(p for p in stage.Traverse() if p.IsA(UsdGeom.BasisCurves))
+    bound, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")
+    material = bound.GetPrim()
+    assert "PhysicsCurvesDeformableMaterialAPI" in material.GetMetadata("apiSchemas").GetAppliedItems()
+    value = lambda name: material.GetAttribute(f"physics:{name}").Get()
+    radius = 0.5 * value("thickness")
+    expected = {
+        "density": 1200,
+        "staticFriction": 0.4,
+        "dynamicFriction": 0.2,
+        "stretchStiffness": 3.9e9,
+        "bendStiffness": 2.5 * 3.9e9,
+        "twistStiffness": 2.5 * 0.89e9,
+        "curvesStretchStiffness": 3.9e9 * np.pi * radius**2,
+        "curvesBendStiffness": 2.5 * 3.9e9 * np.pi / 4 * radius**4,
+        "curvesTwistStiffness": 2.5 * 0.89e9 * np.pi / 2 * radius**4,
+    }
+    for name, number in expected.items():
+        np.testing.assert_allclose(value(name), number, rtol=1e-5, err_msg=name)
+    # The file's curves have these constants again, and what the file cannot give is said.
+    groom = hs.Groom.read(tmp_path / "hair.usda")
+    np.testing.assert_allclose(groom.factors["stiffness"], 2.5, rtol=1e-4)
+    text = " ".join(groom.notes)
+    assert "2.5 times the stiffness of a human hair" in text and "density = 1200, friction = 0.4" in text
+
+
+def test_the_physics_material_of_a_stage_in_centimeters(tmp_path):
+    points, offsets = tuft()
+    stage = new_stage(tmp_path / "a.usda")
+    UsdGeom.SetStageMetersPerUnit(stage, 0.01)
+    curves = define_curves(stage, "/hair", 100 * points, offsets)
+    curves.GetWidthsAttr().Clear()
+    material = UsdShade.Material.Define(stage, "/m")
+    material.GetPrim().AddAppliedSchema("PhysicsCurvesDeformableMaterialAPI")
+    # A diameter of 80 µm and a third of the stiffness of hair, [kg/(cm s²)].
+    for name, number in (("thickness", 0.008), ("bendStiffness", 1.3e9 * 0.01)):
+        material.GetPrim().CreateAttribute(f"physics:{name}", Sdf.ValueTypeNames.Float).Set(number)
+    UsdShade.MaterialBindingAPI.Apply(curves.GetPrim()).Bind(material, materialPurpose="physics")
+    stage.Save()
+    groom = hs.Groom.read(tmp_path / "a.usda")
+    np.testing.assert_allclose(groom.radii, 4e-5, rtol=1e-4)
+    np.testing.assert_allclose(groom.factors["stiffness"], 1 / 3, rtol=1e-4)
 
 
 def line(control):

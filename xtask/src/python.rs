@@ -9,9 +9,9 @@ use std::{
 /// Folder of the virtual environment.
 const ENVIRONMENT: &str = "target/python";
 
-/// Clients that the tests use: Blender, Open Job Description and a checker of the type stubs. Not every version of Python and not
+/// Clients that the tests use: Blender, Open Job Description, a checker of the type stubs, plots of the tutorial, and Ray. Not every version of Python and not
 /// every system has each of them; without one, its tests are skipped.
-const CLIENTS: [&str; 3] = ["bpy==5.0.1", "openjd-cli>=0.8", "mypy>=1.11"];
+const CLIENTS: [&str; 5] = ["bpy==5.0.1", "openjd-cli>=0.8", "mypy>=1.11", "matplotlib>=3.9", "ray>=2.40"];
 
 /// Passed, failed and skipped tests.
 pub type Counts = [u64; 3];

@@ -1,7 +1,7 @@
 //! Formats that a host program reads and writes: USD and Alembic, by the Python package.
 
 use crate::{Axis, Character, Error, Format, ReadOptions, Result, load, strands::Read, units::FileUnits};
-use hairspring::groom::Groom;
+use hairspring::{groom::Groom, material::Material};
 use std::{
     path::{Path, PathBuf},
     sync::{OnceLock, RwLock},
@@ -65,6 +65,8 @@ pub struct CacheDescription {
     pub grooms: Vec<(String, Groom)>,
     /// Strands of each groom that are simulated; shape `[grooms][strands]`.
     pub guides: Vec<Vec<bool>>,
+    /// Materials of each groom, one per group; shape `[grooms][groups]`.
+    pub materials: Vec<Vec<Material>>,
     /// The scene or groom that was baked.
     pub source: String,
     /// USD file that the written one is an animated layer over.

@@ -36,7 +36,16 @@ impl ExternalFormats for PythonFormats {
         with_host(|host| {
             let read = host.call_method1("read_groom", (path, options.scale, up(options)))?;
             let (arrays, group_names, unit_known, notes): (Bound<PyDict>, _, bool, _) = read.extract()?;
-            let value = Groom { group_names, ..crate::groom::from_arrays(&arrays)? };
+            let density: Option<Floats> = arrays.get_item("density")?.map(|d| d.extract()).transpose()?;
+            arrays.del_item("density").ok();
+            let mut value = Groom { group_names, ..crate::groom::from_arrays(&arrays)? };
+            if let Some(shares) = density {
+                let shares = shares.numbers()?;
+                if shares.len() != value.strand_count() {
+                    return Err(crate::errors::setting("`density` must have one number for each strand"));
+                }
+                hairspring::groom::thin(&mut value, shares);
+            }
             Ok(ExternalFile { value, unit_known, notes })
         })
     }
@@ -45,9 +54,10 @@ impl ExternalFormats for PythonFormats {
         with_host(|host| {
             let read = host.call_method1("read_body", (path, options.scale, up(options)))?;
             #[expect(clippy::type_complexity, reason = "the tuple that Python returns")]
-            let (vertices, triangles, uvs, parts, frames, rate, unit_known, notes): (
+            let (vertices, triangles, uvs, colors, parts, frames, rate, unit_known, notes): (
                 Floats,
                 Indices,
+                Option<Floats>,
                 Option<Floats>,
                 Vec<(String, u32)>,
                 Option<Bound<PyAny>>,
@@ -60,6 +70,8 @@ impl ExternalFormats for PythonFormats {
                 triangles: triangles.triples("triangles")?.to_vec(),
                 uvs: uvs
                     .map_or(Ok(Vec::new()), |uvs| Ok::<_, PyErr>(uvs.rows::<Vec2, 2>("uvs")?.to_vec()))?,
+                colors: colors
+                    .map_or(Ok(Vec::new()), |c| Ok::<_, PyErr>(c.rows::<Vec3, 3>("colors")?.to_vec()))?,
                 ..Mesh::default()
             };
             crate::field::check_mesh(&mesh.positions, &mesh.triangles)?;
@@ -86,7 +98,8 @@ impl ExternalFormats for PythonFormats {
         with_host(|host| {
             let py = host.py();
             let mut grooms = Vec::new();
-            for ((name, groom), guide) in description.grooms.iter().zip(&description.guides) {
+            for (k, ((name, groom), guide)) in description.grooms.iter().zip(&description.guides).enumerate()
+            {
                 // The same properties that Python sees.
                 let shown = Bound::new(py, crate::groom::Groom::of(groom.clone()))?;
                 let fields = PyDict::new(py);
@@ -96,6 +109,11 @@ impl ExternalFormats for PythonFormats {
                 }
                 fields.set_item("guides_and_weights", shown.getattr("guides")?)?;
                 fields.set_item("name", name)?;
+                let materials = description.materials.get(k).map_or(&[][..], |m| m);
+                fields.set_item(
+                    "materials",
+                    pythonize::pythonize(py, materials).map_err(crate::errors::setting)?,
+                )?;
                 fields.set_item("guide", PyArray1::from_slice(py, guide))?;
                 grooms.push(fields);
             }

@@ -33,8 +33,8 @@ use std::{path::PathBuf, sync::Arc};
 ///     Guide strands of each strand; unused entries repeat the first one.
 /// guide_weights : array [strands, 3], float32, optional
 ///     Weight of each guide; they sum to 1.
-/// stiffness, damping, drag : array [strands], float32, optional
-///     Factors of the material's `bend`, `damping` and `drag` for each strand, 0 or more.
+/// stiffness, damping, drag, friction, charge : array [strands], float32, optional
+///     Factors of the material's `bend`, `damping`, `drag`, `friction` and `charge` for each strand, 0 or more.
 ///
 /// Raises
 /// ------
@@ -77,12 +77,22 @@ struct Arrays<'py> {
     damping: Option<Floats<'py>>,
     #[pyo3(default)]
     drag: Option<Floats<'py>>,
+    #[pyo3(default)]
+    friction: Option<Floats<'py>>,
+    #[pyo3(default)]
+    charge: Option<Floats<'py>>,
 }
 
 impl Arrays<'_> {
     /// The factors of the material for each strand; empty if all are 1.
     fn scales(&self, strands: usize) -> PyResult<Vec<StrandScale>> {
-        let given = [("stiffness", &self.stiffness), ("damping", &self.damping), ("drag", &self.drag)];
+        let given = [
+            ("stiffness", &self.stiffness),
+            ("damping", &self.damping),
+            ("drag", &self.drag),
+            ("friction", &self.friction),
+            ("charge", &self.charge),
+        ];
         let mut scales = Vec::new();
         for (name, array) in given {
             let Some(array) = array else { continue };
@@ -97,7 +107,9 @@ impl Arrays<'_> {
                 match name {
                     "stiffness" => scale.bend = *n,
                     "damping" => scale.damping = *n,
-                    _ => scale.drag = *n,
+                    "drag" => scale.drag = *n,
+                    "friction" => scale.friction = *n,
+                    _ => scale.charge = *n,
                 }
             }
         }
@@ -186,7 +198,7 @@ fn fits(name: &str, length: usize, expected: usize, what: &str) -> PyResult<()> 
 #[pymethods]
 impl Groom {
     #[new]
-    #[pyo3(signature = (points, offsets, *, radii=None, groups=None, root_uvs=None, colors=None, guides=None, guide_weights=None, stiffness=None, damping=None, drag=None))]
+    #[pyo3(signature = (points, offsets, *, radii=None, groups=None, root_uvs=None, colors=None, guides=None, guide_weights=None, stiffness=None, damping=None, drag=None, friction=None, charge=None))]
     #[expect(clippy::too_many_arguments, reason = "one for each array; keywords in Python")]
     fn new(
         points: Floats,
@@ -200,6 +212,8 @@ impl Groom {
         stiffness: Option<Floats>,
         damping: Option<Floats>,
         drag: Option<Floats>,
+        friction: Option<Floats>,
+        charge: Option<Floats>,
     ) -> PyResult<Self> {
         let arrays = Arrays {
             points,
@@ -213,6 +227,8 @@ impl Groom {
             stiffness,
             damping,
             drag,
+            friction,
+            charge,
         };
         arrays.groom().map(Self::of)
     }
@@ -324,7 +340,8 @@ impl Groom {
         )))
     }
 
-    /// Factors of the material for each strand: a dict of `stiffness`, `damping` and `drag`, [strands] float32; or None.
+    /// Factors of the material for each strand: a dict of `stiffness`, `damping`, `drag`, `friction` and
+    /// `charge`, [strands] float32; or None.
     #[getter]
     fn factors<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let scales = &self.inner.scales;
@@ -333,6 +350,8 @@ impl Groom {
         factors.set_item("stiffness", of(|s| s.bend))?;
         factors.set_item("damping", of(|s| s.damping))?;
         factors.set_item("drag", of(|s| s.drag))?;
+        factors.set_item("friction", of(|s| s.friction))?;
+        factors.set_item("charge", of(|s| s.charge))?;
         Ok((!scales.is_empty()).then_some(factors))
     }
 

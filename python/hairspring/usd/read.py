@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdSkel
 
+from . import material
 from ..formats import FACTORS, MAX_POSITIONS, Curves, FormatError, MovingMesh, as_lengths_and_points, guides_from_flags
 from ..shapes import expand, on_curve, triangulate, varying_count
 
@@ -117,6 +118,7 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
         closest, _ = primvar(prim, "groom_closest_guides")
         weights, _ = primvar(prim, "groom_guide_weights")
         factors = {name: primvar(prim, name) for name in FACTORS}
+        material_radius, stiffer = material.read(prim, notes)
         each = np.array([[varying_count(int(n), kind, basis, wrap) for n in counts], counts])
         first = 0
         before = len(strands)
@@ -126,14 +128,16 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
             points = on_curve(own, kind, basis, wrap) @ linear + shift
             strands.append(points)
             along = expand(widths, width_kind, s, each, len(points))
-            parts["radii"].append(np.full(len(points), np.nan) if along is None else 0.5 * length * along)
+            without = np.nan if material_radius is None else material_radius
+            parts["radii"].append(np.full(len(points), without) if along is None else 0.5 * length * along)
             along = None if color is None else expand(color, color_kind, s, each, len(points))
             parts["colors"].append(np.full((len(points), 3), np.nan) if along is None else along)
             root = None if uv is None else expand(uv, uv_kind, s, each, max(len(points), 1))
             parts["uvs"].append(np.full(2, np.nan) if root is None else root[0][:2])
             for name, (values, interpolation) in factors.items():
                 own = None if values is None else expand(values, interpolation, s, each, max(len(points), 1))
-                parts[name].append(np.nan if own is None else float(np.mean(own)))
+                without = np.nan if stiffer is None or name != "stiffness" else stiffer
+                parts[name].append(without if own is None else float(np.mean(own)))
             parts["groups"].append(int(ids[s]) if ids is not None and len(ids) == len(counts) else group)
             parts["flags"].append(bool(flags[s]) if flags is not None and len(flags) == len(counts) else False)
             if closest is not None and weights is not None and len(closest) == len(counts) == len(weights):
@@ -220,7 +224,7 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
         raise FormatError("the stage has no visible meshes")
     times, rate = sample_times(stage, meshes)
     at = [Usd.TimeCode(float(t)) for t in times] or [Usd.TimeCode.EarliestTime()]
-    triangles, parts, uvs, total = [], [], [], 0
+    triangles, parts, uvs, colors, total = [], [], [], [], 0
     for prim in meshes:
         mesh = UsdGeom.Mesh(prim)
         topology = [mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()]
@@ -237,7 +241,8 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
             own = own[:, ::-1]
         triangles.append(own + total)
         parts.append((str(prim.GetPath()), len(own)))
-        uvs.append(vertex_uvs(prim, indices, len(points)))
+        uvs.append(of_vertices(prim, 2, indices, len(points), "st", "st0", "UVMap", "map1"))
+        colors.append(of_vertices(prim, 3, indices, len(points), "displayColor"))
         total += len(points)
     if len(at) * total > MAX_POSITIONS:
         raise FormatError(f"the motion holds more than {MAX_POSITIONS} positions; shorten it")
@@ -253,23 +258,23 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
             frames[f, first:end] = points @ linear + shift
             first = end
     moves = len(at) > 1 and not np.allclose(frames, frames[:1], atol=1e-7)
-    whole = np.concatenate(uvs) if all(u is not None for u in uvs) else None
+    whole = [np.concatenate(arrays) if all(a is not None for a in arrays) else None for arrays in (uvs, colors)]
     notes = [f"{len(at)} frames at {rate:g} Hz move the body's vertices"] if moves else []
     joined = np.concatenate(triangles).astype(np.uint32)
-    return MovingMesh(frames[0].copy(), joined, whole, parts, frames if moves else None, rate, notes)
+    return MovingMesh(frames[0].copy(), joined, whole[0], parts, frames if moves else None, rate, notes, whole[1])
 
 
-def vertex_uvs(prim: Usd.Prim, indices: np.ndarray, vertices: int) -> np.ndarray | None:
-    """Texture coordinates of each vertex; of the first corner that uses it if they differ."""
-    uv, kind = primvar(prim, "st", "st0", "UVMap", "map1")
-    if uv is None or uv.ndim != 2:
+def of_vertices(prim: Usd.Prim, size: int, indices: np.ndarray, vertices: int, *names: str) -> np.ndarray | None:
+    """The first of these primvars, with `size` numbers for each vertex: those of the first corner that uses it if they differ."""
+    values, kind = primvar(prim, *names)
+    if values is None or values.ndim != 2 or values.shape[1] < size:
         return None
-    if kind in ("vertex", "varying") and len(uv) == vertices:
-        return uv[:, :2].astype(np.float32)
-    if kind != "faceVarying" or len(uv) != len(indices):
+    if kind in ("vertex", "varying") and len(values) == vertices:
+        return values[:, :size].astype(np.float32)
+    if kind != "faceVarying" or len(values) != len(indices):
         return None
-    out = np.zeros((vertices, 2), np.float32)
-    out[indices[::-1]] = uv[::-1, :2]
+    out = np.zeros((vertices, size), np.float32)
+    out[indices[::-1]] = values[::-1, :size]
     return out
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from pxr import Gf, Kind, Sdf, Usd, UsdGeom, Vt
 
 from ..description import Description, MovingGroom, identifier
+from . import material
 from .read import open_stage, space, world
 
 DEFORMABLE = "PhysicsCurvesDeformableSimAPI"
@@ -20,7 +21,8 @@ class CurvesWriter:
 
     Each groom becomes a linear, nonperiodic BasisCurves below `/Hair` with `points`, `velocities` and `extent` over time;
     `widths`; and the primvars `groom_id`, `groom_group_id`, `groom_guide` and, if the groom has them, `groom_root_uv`, `st`,
-    `displayColor`, `groom_closest_guides` and `groom_guide_weights`. `physics:restShapePoints` is the groom at rest.
+    `displayColor`, `groom_closest_guides` and `groom_guide_weights`. `physics:restShapePoints` is the groom at rest, and a
+    physics material beside the curves has the constants of the hair's first material.
 
     With `over`, the file is an animated layer over that stage: it has the stage as a sublayer, and overrides the curves that the
     grooms were read from, in their own space.
@@ -120,6 +122,9 @@ class CurvesWriter:
         rest = ((groom.points[points].astype(np.float64) - shift) @ back).astype(np.float32)
         attribute = prim.CreateAttribute("physics:restShapePoints", Sdf.ValueTypeNames.Point3fArray, False)
         attribute.Set(Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(rest)))
+        if groom.materials:
+            path = prim.GetPath().GetParentPath().AppendChild(f"{prim.GetName()}_physics")
+            material.write(curves, path, groom.materials[0], float(groom.radii[points].mean()))
         api, types = UsdGeom.PrimvarsAPI(prim), Sdf.ValueTypeNames
 
         def primvar(name, kind, values, interpolation=UsdGeom.Tokens.uniform, size=-1):

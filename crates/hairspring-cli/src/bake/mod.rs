@@ -19,6 +19,7 @@ use crate::{
 use cache::Cache;
 use checkpoints::Checkpoints;
 use clap::Parser;
+use hairspring::material::Material;
 use hairspring_io::{Format, FrameWriter};
 use hairspring_scene::{
     Scene,
@@ -190,6 +191,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         manifest = Some(begun);
     }
     let names: Vec<String> = scene.grooms.iter().map(|groom| groom.name.clone()).collect();
+    let materials = scene.grooms.iter().map(|groom| match &groom.materials[..] {
+        [] => vec![Material::default()],
+        given => given.to_vec(),
+    });
+    let materials: Vec<_> = materials.collect();
     let mut stage = Stage::new(scene)?;
     console.note_all(stage.thin_mesh());
     console.note_all(stage.starts_inside());
@@ -280,7 +286,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         cache.put_together(
             (&all, &samples),
             &pattern,
-            selection.describe(&names, grooms, source),
+            selection.describe(&names, grooms, materials, source),
             console,
         )?;
         if !options.keep_frames {

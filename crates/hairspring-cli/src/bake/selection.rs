@@ -1,6 +1,6 @@
 //! The strands of a stage that are written: all, or those that are simulated.
 
-use hairspring::groom::Groom;
+use hairspring::{groom::Groom, material::Material};
 use hairspring_io::CacheDescription;
 use hairspring_scene::stage::Stage;
 use std::borrow::Cow;
@@ -61,7 +61,13 @@ impl Selection {
     }
 
     /// Describes the grooms, which have these names or none, for a file of moving strands.
-    pub fn describe(&self, names: &[String], grooms: Vec<Groom>, source: String) -> CacheDescription {
+    pub fn describe(
+        &self,
+        names: &[String],
+        grooms: Vec<Groom>,
+        materials: Vec<Vec<Material>>,
+        source: String,
+    ) -> CacheDescription {
         let guides =
             (0..grooms.len()).map(|g| self.strands(g).map(|s| self.simulated[g][s]).collect()).collect();
         let name = |k: usize| match names.get(k).filter(|name| !name.is_empty()) {
@@ -71,6 +77,6 @@ impl Selection {
         };
         let names: Vec<String> = (0..grooms.len()).map(name).collect();
         let grooms = names.into_iter().zip(grooms).collect();
-        CacheDescription { grooms, guides, source, ..CacheDescription::default() }
+        CacheDescription { grooms, guides, materials, source, ..CacheDescription::default() }
     }
 }

@@ -14,7 +14,7 @@ use crate::{Place, Problem, Result, load, picture::Picture, text::as_text};
 use glam::{Vec2, Vec3};
 use hairspring::{
     body::Mesh,
-    groom::{DEFAULT_RADIUS, Groom, RootBinding, StrandScale, bind_roots, cut, keep_strands},
+    groom::{DEFAULT_RADIUS, Groom, RootBinding, StrandScale, bind_roots, cut, keep_strands, thin},
 };
 use toml::Spanned;
 
@@ -156,7 +156,6 @@ impl Reader<'_> {
             let root = roots.as_ref()?.get(s)?;
             Some((root.triangle as usize, root.barycentric))
         };
-        let mut kept = vec![true; strands];
         for (name, map_file) in maps {
             let near = map_file.span().start;
             let map = self.map(name, map_file, strands, mesh)?;
@@ -174,16 +173,8 @@ impl Reader<'_> {
                 return Err(self.wrong(near, name, text));
             }
             match name {
-                "length" => {
-                    cut(groom, &values);
-                    kept.iter_mut().zip(&values).for_each(|(kept, share)| *kept &= *share > 0.0);
-                }
-                "density" => {
-                    let draws = (0..strands).map(evenly);
-                    kept.iter_mut()
-                        .zip(draws.zip(&values))
-                        .for_each(|(kept, (draw, share))| *kept &= draw < *share);
-                }
+                "length" => cut(groom, &values),
+                "density" => thin(groom, &values),
                 "radius" if values.contains(&0.0) => {
                     let text = "the map `radius` is 0 at a strand; it must be above 0".into();
                     return Err(self.wrong(near, name, text));
@@ -192,19 +183,17 @@ impl Reader<'_> {
                 _ => scale(groom, name, &values),
             }
         }
-        if !kept.contains(&true) && strands > 0 {
+        if named.maps.length.is_some() {
+            let lengths: Vec<f32> = (0..groom.strand_count()).map(|s| groom.strand_length(s)).collect();
+            keep_strands(groom, |s| lengths[s] > 0.0);
+        }
+        if groom.strand_count() == 0 && strands > 0 {
             let near =
                 named.maps.density.as_ref().or(named.maps.length.as_ref()).map_or(0, |m| m.span().start);
             return Err(self.wrong(near, "maps", "the maps leave no strand of the groom".into()));
         }
-        keep_strands(groom, |s| kept[s]);
         Ok(())
     }
-}
-
-/// Element `k` of a sequence that fills 0 to 1 evenly, for any run of elements: multiples of √2 modulo 1.
-fn evenly(k: usize) -> f32 {
-    (0.5 + k as f64 * std::f64::consts::SQRT_2).fract() as f32
 }
 
 /// Multiplies a parameter of the material for each strand.

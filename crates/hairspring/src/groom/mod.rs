@@ -26,7 +26,7 @@ pub use grow::{Growth, grow, grow_along};
 pub use precision::{Imprecise, MAX_COORDINATE, first_imprecise};
 pub use sanitize::{Repairs, sanitize};
 pub use thicken::{Thicken, thicken};
-pub use trim::{cut, keep_strands};
+pub use trim::{cut, keep_strands, thin};
 
 use glam::{Vec2, Vec3};
 

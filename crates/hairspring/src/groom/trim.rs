@@ -93,6 +93,26 @@ pub fn keep_strands(groom: &mut Groom, keep: impl Fn(usize) -> bool) {
         (points, radii, colors, offsets, guides);
 }
 
+/// Keeps the share `shares[s]` of the strands around strand `s`, 0 to 1: strand `s` is kept if its share is above
+/// element `s` of a sequence that fills 0 to 1 evenly in every run of strands (multiples of √2 modulo 1).
+///
+/// ```
+/// use glam::Vec3;
+/// use hairspring::groom::{Groom, thin};
+///
+/// let mut groom = Groom::from_strands((0..1000).map(|k| [0.0, 1.0, 2.0].map(|y| Vec3::new(k as f32, y, 0.0))), 35e-6);
+/// thin(&mut groom, &[0.3; 1000]);
+/// assert!((295..=305).contains(&groom.strand_count()));
+/// ```
+///
+/// # Panics
+/// If `shares` does not have an entry for each strand.
+pub fn thin(groom: &mut Groom, shares: &[f32]) {
+    assert_eq!(shares.len(), groom.strand_count(), "a share for each strand");
+    let element = |s: usize| (0.5 + s as f64 * std::f64::consts::SQRT_2).fract();
+    keep_strands(groom, |s| element(s) < f64::from(shares[s]));
+}
+
 /// Returns the guides of the kept strands, by their new indices.
 fn guides_of(groom: &Groom, kept: &[usize], moved: &[u32]) -> Vec<GuideWeights> {
     if groom.guides.is_empty() {
