@@ -37,7 +37,7 @@ Examples:
   hairspring info ponytail.tfx --scale 0.0025 --json
   hairspring info robot.glb")]
 pub struct Options {
-    /// A groom (.hair, .tfx, .data), body (.glb, .gltf, .obj, .tfxmesh), motion (.bvh), bones (.tfxbone) or scene (.toml)
+    /// A groom (.hair, .tfx, .data, .csv, .ply), body (.glb, .gltf, .obj, .tfxmesh), motion (.bvh), bones (.tfxbone) or scene (.toml)
     #[arg(value_name = "FILE")]
     file: PathBuf,
 
@@ -75,7 +75,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let wrong = |e| Fault::reading(e, path);
     let format = Format::of(path).ok_or_else(|| {
         Fault::Usage(format!(
-            "{}: unknown extension; expected .hair, .tfx, .data, .glb, .gltf, .obj, .tfxmesh, .tfxbone, .bvh, .csv, .pc2, .usd, .abc or .toml",
+            "{}: unknown extension; expected .hair, .tfx, .data, .glb, .gltf, .obj, .tfxmesh, .tfxbone, .bvh, .csv, .ply, .pc2, .usd, .abc or .toml",
             path.display()
         ))
     })?;
@@ -83,7 +83,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         return Err(Fault::Usage("--reverse applies to a groom file (.hair, .tfx, .data)".into()));
     }
     let mut found = match format {
-        Format::Hair | Format::Tfx | Format::Usc | Format::Csv => {
+        Format::Hair | Format::Tfx | Format::Usc | Format::Csv | Format::Ply => {
             let mut loaded = read_groom(path, &units).map_err(wrong)?;
             tell(&loaded.notes, &loaded.repairs, console);
             if options.units.reverse {

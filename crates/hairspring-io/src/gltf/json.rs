@@ -115,6 +115,15 @@ pub(super) struct Attributes {
     pub normal: Option<usize>,
     #[serde(rename = "TEXCOORD_0")]
     pub uv: Option<usize>,
+    /// Of the points of lines.
+    #[serde(rename = "COLOR_0")]
+    pub color: Option<usize>,
+    /// Of the points of lines; glTF leaves the meaning of attributes that begin with `_` to programs.
+    #[serde(rename = "_RADIUS")]
+    pub radius: Option<usize>,
+    /// Diameter of the points of lines.
+    #[serde(rename = "_WIDTH")]
+    pub width: Option<usize>,
     joints_0: Option<usize>,
     joints_1: Option<usize>,
     joints_2: Option<usize>,

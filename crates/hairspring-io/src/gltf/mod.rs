@@ -8,13 +8,17 @@
 mod accessor;
 mod animation;
 mod container;
+mod curves;
 mod json;
 mod mesh;
 mod skeleton;
 
-use crate::Problem;
+use crate::{Problem, strands::Read};
 use glam::Affine3A;
-use hairspring::body::{Body, Clip, Skin};
+use hairspring::{
+    body::{Body, Clip, Skin},
+    groom::Groom,
+};
 use hairspring_scene::VertexCache;
 use skeleton::Skeleton;
 
@@ -54,6 +58,21 @@ pub fn parse(
         },
         notes,
     ))
+}
+
+/// Reads the lines of a glTF file as the strands of a groom, root first. The format is in meters, Y up. `sibling` returns the
+/// bytes of a file next to it, and is asked for each file once.
+///
+/// # Errors
+/// Returns an error for a file without lines, lines that branch or have no ends, and see [`parse`].
+pub fn parse_groom(data: &[u8], sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Groom, Problem> {
+    read_groom(data, sibling).map(Read::in_file_units)
+}
+
+/// Reads the lines of a glTF file.
+pub(crate) fn read_groom(data: &[u8], sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Read, Problem> {
+    let (document, buffers) = container::open(data, sibling)?;
+    curves::read(&document, &buffers)
 }
 
 /// Returns the transform, or `None` if it is singular or not finite.
