@@ -224,6 +224,7 @@ fn in_meters(
     let extent = extent(character.body.mesh.positions.iter().copied());
     let (scale, turn) = settle(options, units, extent, &mut notes);
     apply_to_body(&mut character.body, &mut character.clips, scale, turn);
+    character.morphs.convert(scale, turn);
     if let Some(cache) = &mut character.vertex_cache {
         cache.frames.iter_mut().flatten().for_each(|p| *p = turn * (*p * scale));
     }
@@ -260,9 +261,15 @@ pub(crate) fn read_motion_at(
         make_printable(motion.joints.iter_mut().map(|joint| &mut joint.name).chain([&mut motion.clip.name]));
         return Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes: plain(notes) });
     }
-    let Loaded { value: character, scale, notes, .. } = read_character(path, options)?;
-    let clip = pick_clip(&character.clips, name).map_err(|text| Problem::whole(text).in_file(path))?.clone();
-    let motion = Motion { joints: character.body.joints, clip };
+    let Loaded { value: mut character, scale, mut notes, .. } = read_character(path, options)?;
+    let clip = pick_clip(&character.clips, name).map_err(|text| Problem::whole(text).in_file(path))?;
+    if character.morphs.moves(clip) {
+        notes.push(
+            "its animated morph targets are left out, because they move only the body of their own file; name the file as the body, too"
+                .into(),
+        );
+    }
+    let motion = Motion { joints: character.body.joints, clip: character.clips.swap_remove(clip) };
     Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes })
 }
 
@@ -277,15 +284,15 @@ pub fn read_bones(path: &Path) -> Result<tfxbone::RootBones> {
     Ok(bones)
 }
 
-/// Returns the clip called `name`, ignoring case, or the first if `name` is `None`. The error lists the
-/// available names.
-pub(crate) fn pick_clip<'a>(
-    clips: &'a [hairspring::body::Clip],
+/// Returns the index of the clip called `name`, ignoring case, or of the first if `name` is `None`. The error lists
+/// the available names.
+pub(crate) fn pick_clip(
+    clips: &[hairspring::body::Clip],
     name: Option<&str>,
-) -> std::result::Result<&'a hairspring::body::Clip, String> {
+) -> std::result::Result<usize, String> {
     let found = match name {
-        Some(name) => clips.iter().find(|c| c.name.eq_ignore_ascii_case(name)),
-        None => clips.first(),
+        Some(name) => clips.iter().position(|c| c.name.eq_ignore_ascii_case(name)),
+        None => (!clips.is_empty()).then_some(0),
     };
     found.ok_or_else(|| {
         let known: Vec<&str> = clips.iter().map(|c| c.name.as_str()).collect();

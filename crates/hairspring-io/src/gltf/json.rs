@@ -205,7 +205,7 @@ pub(super) struct Sampler {
     pub interpolation: Interpolation,
 }
 
-#[derive(Clone, Copy, Default, Deserialize, Eq, Hash, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, Hash, PartialEq)]
 #[serde(rename_all = "UPPERCASE")]
 pub(super) enum Interpolation {
     #[default]

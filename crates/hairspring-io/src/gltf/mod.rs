@@ -2,8 +2,8 @@
 //! separate files.
 //!
 //! Every mesh follows its joints: skinned meshes by their weights, others rigidly with the node that holds
-//! them. Morph targets are applied with their default weights. Animations are resampled at 60 Hz. Textures,
-//! animated morph targets, cameras and lights are not read.
+//! them. Morph targets are applied with their default weights, and animations move them. Animations are resampled
+//! at 60 Hz. Textures, cameras and lights are not read. Where a groom is read, lines are its strands.
 
 mod accessor;
 mod animation;
@@ -11,6 +11,8 @@ mod container;
 mod curves;
 mod json;
 mod mesh;
+mod mesh_notes;
+mod morph;
 mod skeleton;
 
 use crate::{Problem, strands::Read};
@@ -20,6 +22,7 @@ use hairspring::{
     groom::Groom,
 };
 use hairspring_scene::VertexCache;
+pub use morph::Morphs;
 use skeleton::Skeleton;
 
 /// A body and the motions from the same file.
@@ -31,6 +34,8 @@ pub struct Character {
     pub clips: Vec<Clip>,
     /// Motion of its vertices, in files without a skeleton.
     pub vertex_cache: Option<VertexCache>,
+    /// Morph targets that the motions move.
+    pub morphs: Morphs,
 }
 
 /// Reads a glTF file, and returns notes about what was left out. The format is in meters, Y up. `sibling` returns
@@ -47,17 +52,12 @@ pub fn parse(
     let (document, buffers) = container::open(data, sibling)?;
     let mut notes = Vec::new();
     let skeleton = Skeleton::read(&document, &buffers, &mut notes)?;
-    let (mesh, joints, weights) = mesh::read(&document, &buffers, &skeleton, &mut notes)?;
-    let clips = animation::clips(&document, &buffers, &skeleton, &mut notes)?;
+    let mesh::Moved { mesh, joints, weights, objects } =
+        mesh::read(&document, &buffers, &skeleton, &mut notes)?;
+    let (clips, morphs) = animation::clips(&document, &buffers, &skeleton, objects, &mut notes)?;
     let skin = Skin { joints, weights, inverse_bind: skeleton.inverse_bind };
-    Ok((
-        Character {
-            body: Body { mesh, joints: skeleton.joints, skin: Some(skin) },
-            clips,
-            vertex_cache: None,
-        },
-        notes,
-    ))
+    let body = Body { mesh, joints: skeleton.joints, skin: Some(skin) };
+    Ok((Character { body, clips, morphs, vertex_cache: None }, notes))
 }
 
 /// Reads the lines of a glTF file as the strands of a groom, root first. The format is in meters, Y up. `sibling` returns the

@@ -138,10 +138,10 @@ fn is_number(element: &ElementDef, name: &str) -> bool {
 
 /// Whether an element lists the vertices of strands.
 fn has_list(element: &ElementDef) -> bool {
-    let is_list = |name: &&str| {
-        element.properties.get(*name).is_some_and(|p| matches!(p.data_type, PropertyType::List(..)))
+    let is_list = |name: &str| {
+        element.properties.get(name).is_some_and(|p| matches!(p.data_type, PropertyType::List(..)))
     };
-    ["strand", "polyline"].contains(&element.name.as_str()) && LISTS.iter().any(|name| is_list(&name))
+    ["strand", "polyline"].contains(&element.name.as_str()) && LISTS.iter().any(|name| is_list(name))
 }
 
 /// Number of faces.

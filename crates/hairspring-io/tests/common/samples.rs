@@ -50,6 +50,7 @@ pub fn all() -> Vec<Sample> {
         ("ply-ids", PLY_IDS.into(), |b| ply::parse(b).map(drop)),
         ("bvh", motion().into_bytes(), |b| bvh::parse(b).map(drop)),
         ("glb", glb(), |b| gltf::parse(b, &|_| None).map(drop)),
+        ("glb-morph", glb_morph(), morphed),
         ("glb-strands", glb_strands(), |b| gltf::parse_groom(b, &|_| None).map(drop)),
         ("rig", RIG.into(), |b| makehuman::parse(obj::parse(mesh().as_bytes())?, b, WEIGHTS).map(drop)),
         ("weights", WEIGHTS.into(), |b| makehuman::parse(obj::parse(mesh().as_bytes())?, RIG, b).map(drop)),
@@ -256,6 +257,34 @@ pub fn glb_strands() -> Vec<u8> {
 "buffers":[{{"byteLength":108}}]}}"#
     );
     glb_of(json, &bin)
+}
+
+/// A GLB of a triangle with a default weight of two targets, which an animation moves.
+pub fn glb_morph() -> Vec<u8> {
+    let positions = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let first_target = [0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.25];
+    // The last two vertices of the second target, two times, and two weights at each.
+    let rest = [0.0, 0.5, 0.0, 0.0, 0.5, 0.1, 0.0, 0.5, 0.0, 0.0, 0.0, 0.5];
+    let floats = [&positions[..], &first_target, &rest];
+    let mut bin: Vec<u8> = floats.concat().iter().flat_map(|v| v.to_le_bytes()).collect();
+    bin.extend([1u8, 2, 0, 0]);
+    let json = r#"{"asset":{"version":"2.0"},"nodes":[{"name":"face","mesh":0}],
+"meshes":[{"weights":[0.5,0],"primitives":[{"attributes":{"POSITION":0},"targets":[{"POSITION":1},{"POSITION":2}]}]}],
+"animations":[{"name":"smile","samplers":[{"input":3,"output":4}],"channels":[{"sampler":0,"target":{"node":0,"path":"weights"}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"},
+{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":2,"indices":{"bufferView":3,"componentType":5121},"values":{"bufferView":2}}},
+{"bufferView":2,"byteOffset":24,"componentType":5126,"count":2,"type":"SCALAR"},{"bufferView":2,"byteOffset":32,"componentType":5126,"count":4,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36},{"buffer":0,"byteOffset":72,"byteLength":48},{"buffer":0,"byteOffset":120,"byteLength":2}],
+"buffers":[{"byteLength":124}]}"#;
+    glb_of(json.into(), &bin)
+}
+
+/// Reads a glTF file and the vertices of its shorter motions.
+fn morphed(data: &[u8]) -> Result<(), Problem> {
+    let (character, _) = gltf::parse(data, &|_| None)?;
+    let short = (0..character.clips.len()).filter(|clip| character.clips[*clip].frame_count() < 1000);
+    short.for_each(|clip| drop(character.morphed(clip)));
+    Ok(())
 }
 
 /// A GLB of a document and its buffer.

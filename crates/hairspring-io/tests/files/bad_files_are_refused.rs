@@ -40,6 +40,7 @@ fn binary_files_cut_at_any_length_are_refused() {
             "tfxbone",
             "glb",
             "glb-strands",
+            "glb-morph",
             "ply-little",
             "ply-big",
         ];
