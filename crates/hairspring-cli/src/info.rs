@@ -37,7 +37,7 @@ Examples:
   hairspring info ponytail.tfx --scale 0.0025 --json
   hairspring info robot.glb")]
 pub struct Options {
-    /// A groom (.hair, .tfx, .data, .csv, .ply), body (.glb, .gltf, .obj, .tfxmesh), motion (.bvh), bones (.tfxbone) or scene (.toml)
+    /// A groom (.hair, .tfx, .data, .csv, .ply, or lines in .obj and .glb), body (.glb, .gltf, .obj, .tfxmesh), motion (.bvh), bones (.tfxbone) or scene (.toml)
     #[arg(value_name = "FILE")]
     file: PathBuf,
 
@@ -103,13 +103,20 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
                 "frames_per_sample": cache.frames_per_sample,
             })
         }
-        Format::Gltf | Format::Obj | Format::TfxMesh => {
-            let loaded = read_body(path, &units).map_err(wrong)?;
-            tell(&loaded.notes, &loaded.repairs, console);
-            let mut found = body(&loaded.value.body);
-            found["motions"] = loaded.value.clips.iter().map(clip).collect();
-            found
-        }
+        Format::Gltf | Format::Obj | Format::TfxMesh => match read_body(path, &units) {
+            Ok(loaded) => {
+                tell(&loaded.notes, &loaded.repairs, console);
+                let mut found = body(&loaded.value.body);
+                found["motions"] = loaded.value.clips.iter().map(clip).collect();
+                found
+            }
+            // A file of lines is a groom.
+            Err(why) => {
+                let loaded = read_groom(path, &units).map_err(|_| wrong(why))?;
+                tell(&loaded.notes, &loaded.repairs, console);
+                groom(&loaded.value, &loaded.repairs)
+            }
+        },
         Format::Bvh => {
             let loaded = read_motion(path, None, &units).map_err(wrong)?;
             tell(&loaded.notes, &loaded.repairs, console);

@@ -84,6 +84,10 @@ pub(super) fn add_targets(
             );
             return Err(Problem::whole(text));
         }
+        // Targets that share an array are kept one by one.
+        let nonzero = added.iter().filter(|by| **by != Vec3::ZERO).count();
+        buffers.spend(nonzero)?;
+        slot.added.reserve_exact(nonzero);
         let moved = added.into_iter().enumerate().filter(|(_, by)| *by != Vec3::ZERO);
         slot.added.extend(moved.map(|(v, by)| ((first + v) as u32, rest(v, by))));
     }

@@ -115,6 +115,8 @@ fn what_is_left_out_is_noted() {
             {"mode": 4, "attributes": {"POSITION": positions}},
         ])
     });
+    let mut file = file;
+    file.json["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing": {}});
     let (groom, notes) = read("a.glb", &file.glb());
     assert_eq!(groom.strand_count(), 2);
     assert!(groom.colors.is_empty());
@@ -123,9 +125,25 @@ fn what_is_left_out_is_noted() {
         "1 primitives of lines have a skin",
         "no COLOR_0",
         "no _RADIUS",
+        "1 nodes draw copies",
     ] {
         assert_eq!(notes.iter().filter(|note| note.contains(text)).count(), 1, "{text}: {notes:?}");
     }
+}
+
+#[test]
+fn more_objects_than_groups_are_one_group() {
+    let mut file = lines(2, |_, positions| json!([{"mode": 3, "attributes": {"POSITION": positions}}]));
+    file.json["scenes"] = json!([]);
+    file.json.as_object_mut().unwrap().remove("scene");
+    let nodes = |count: usize| json!((0..count).map(|_| json!({"mesh": 0})).collect::<Vec<_>>());
+    file.json["nodes"] = nodes(65_536);
+    let (groom, notes) = read("a.glb", &file.glb());
+    assert!(groom.groups.last() == Some(&u16::MAX) && notes.is_empty(), "{notes:?}");
+    file.json["nodes"] = nodes(65_537);
+    let (groom, notes) = read("b.glb", &file.glb());
+    assert!(groom.groups.is_empty() && groom.group_names.is_empty() && groom.strand_count() == 65_537);
+    assert!(notes[0].contains("65537 objects are more than the limit of 65,536 groups"), "{notes:?}");
 }
 
 #[test]

@@ -86,6 +86,18 @@ fn memory_is_proportional_to_the_file_and_its_end_is_a_sentence() {
         "channels": [{"sampler": 0, "target": {"node": 0, "path": "scale"}}]}]);
     check("a long animation", &long.glb(), read_gltf);
 
+    let mut face = GltfFile::tetrahedron();
+    let positions = face.floats("VEC3", &vec![0.5; 30_000]);
+    face.primitive()["attributes"]["POSITION"] = json!(positions);
+    face.primitive()["targets"] = json!(vec![json!({"POSITION": positions}); 700]);
+    let (times, weights) = (face.floats("SCALAR", &[0.0]), face.floats("SCALAR", &[1.0; 700]));
+    face.json["animations"] = json!([{"samplers": [{"input": times, "output": weights}],
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}]}]);
+    check("morph targets that share an array", &face.glb(), |data| {
+        let (character, _) = gltf::parse(data, &|_| None)?;
+        character.morphed(0).map_err(|text| panic!("{text}")).map(drop)
+    });
+
     let read_obj = |data: &[u8]| obj::parse(data).map(drop);
     let ones = "1 ".repeat(500_000);
     check("a polygon", format!("v 0 0 0\nf {ones}").as_bytes(), read_obj);
