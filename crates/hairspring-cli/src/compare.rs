@@ -25,7 +25,7 @@ use std::path::PathBuf;
 #[derive(Parser)]
 #[command(after_help = after_help())]
 pub struct Options {
-    /// A scene (.toml), or a groom (.hair, .tfx, .data) that hangs still under gravity [default with
+    /// A scene (.toml), or a groom (.hair, .tfx, .data, .csv, .ply) that hangs still under gravity [default with
     /// --methods: the built-in head]
     #[arg(value_name = "A", required_unless_present = "methods")]
     a: Option<PathBuf>,

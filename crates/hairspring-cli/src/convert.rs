@@ -11,7 +11,8 @@ use clap::Parser;
 use hairspring_io::{Format, read_groom, write_groom};
 use std::path::PathBuf;
 
-/// Converts a groom between the formats .hair, .tfx and .data; the file extension selects the format.
+/// Converts a groom between the formats .hair, .tfx and .data; the file extension selects the format. Grooms are also read
+/// from .csv and .ply files, and from the lines of .obj and .glb files.
 ///
 /// The output is in meters, Y up, and repaired: it has no segment of zero length and no value that is not
 /// finite, and every strand has at least three points. Standard error reports what was repaired, guessed or

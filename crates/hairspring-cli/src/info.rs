@@ -37,7 +37,7 @@ Examples:
   hairspring info ponytail.tfx --scale 0.0025 --json
   hairspring info robot.glb")]
 pub struct Options {
-    /// A groom (.hair, .tfx, .data), body (.glb, .gltf, .obj, .tfxmesh), motion (.bvh), bones (.tfxbone) or scene (.toml)
+    /// A groom (.hair, .tfx, .data, .csv, .ply, or lines in .obj and .glb), body (.glb, .gltf, .obj, .tfxmesh), motion (.bvh), bones (.tfxbone) or scene (.toml)
     #[arg(value_name = "FILE")]
     file: PathBuf,
 
@@ -75,7 +75,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let wrong = |e| Fault::reading(e, path);
     let format = Format::of(path).ok_or_else(|| {
         Fault::Usage(format!(
-            "{}: unknown extension; expected .hair, .tfx, .data, .glb, .gltf, .obj, .tfxmesh, .tfxbone, .bvh, .csv, .pc2, .usd, .abc or .toml",
+            "{}: unknown extension; expected .hair, .tfx, .data, .glb, .gltf, .obj, .tfxmesh, .tfxbone, .bvh, .csv, .ply, .pc2, .usd, .abc or .toml",
             path.display()
         ))
     })?;
@@ -83,7 +83,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         return Err(Fault::Usage("--reverse applies to a groom file (.hair, .tfx, .data)".into()));
     }
     let mut found = match format {
-        Format::Hair | Format::Tfx | Format::Usc | Format::Csv => {
+        Format::Hair | Format::Tfx | Format::Usc | Format::Csv | Format::Ply => {
             let mut loaded = read_groom(path, &units).map_err(wrong)?;
             tell(&loaded.notes, &loaded.repairs, console);
             if options.units.reverse {
@@ -103,13 +103,20 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
                 "frames_per_sample": cache.frames_per_sample,
             })
         }
-        Format::Gltf | Format::Obj | Format::TfxMesh => {
-            let loaded = read_body(path, &units).map_err(wrong)?;
-            tell(&loaded.notes, &loaded.repairs, console);
-            let mut found = body(&loaded.value.body);
-            found["motions"] = loaded.value.clips.iter().map(clip).collect();
-            found
-        }
+        Format::Gltf | Format::Obj | Format::TfxMesh => match read_body(path, &units) {
+            Ok(loaded) => {
+                tell(&loaded.notes, &loaded.repairs, console);
+                let mut found = body(&loaded.value.body);
+                found["motions"] = loaded.value.clips.iter().map(clip).collect();
+                found
+            }
+            // A file of lines is a groom.
+            Err(why) => {
+                let loaded = read_groom(path, &units).map_err(|_| wrong(why))?;
+                tell(&loaded.notes, &loaded.repairs, console);
+                groom(&loaded.value, &loaded.repairs)
+            }
+        },
         Format::Bvh => {
             let loaded = read_motion(path, None, &units).map_err(wrong)?;
             tell(&loaded.notes, &loaded.repairs, console);

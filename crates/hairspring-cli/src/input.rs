@@ -47,7 +47,7 @@ impl From<Units> for ReadOptions {
 /// The input of a simulation and the settings that override it.
 #[derive(Args)]
 pub struct Input {
-    /// A scene (.toml), or a groom (.hair, .tfx, .data) that hangs still under gravity
+    /// A scene (.toml), or a groom (.hair, .tfx, .data, .csv, .ply) that hangs still under gravity
     #[arg(value_name = "SCENE|GROOM")]
     pub path: PathBuf,
 
@@ -149,7 +149,7 @@ pub const UNITS_OF_A_SCENE: &str =
 /// The error for a file that is neither a scene nor a groom.
 pub fn unknown_extension(path: &Path) -> Fault {
     Fault::Usage(format!(
-        "{}: unknown extension; a scene is read from .toml, a groom from .hair, .tfx or .data",
+        "{}: unknown extension; a scene is read from .toml, a groom from .hair, .tfx, .data, .csv or .ply",
         path.display()
     ))
 }

@@ -17,7 +17,7 @@ Examples:
 Press `?` in the window for the keys. A script has one command per line, such as `wait 30`, `set KEY VALUE`, `shot FILE.png` or `quit`; docs/window.md lists all. \
 An error of a line is printed with the line's number. The script goes on, and the exit code is 2.")]
 pub struct Options {
-    /// A scene (.toml), a groom (.hair, .tfx, .data, .obj), a body (.glb, .gltf, .vrm, .obj, .tfxmesh) or a
+    /// A scene (.toml), a groom (.hair, .tfx, .data, .csv, .ply, .obj), a body (.glb, .gltf, .vrm, .obj, .tfxmesh) or a
     /// motion (.bvh) [default: the built-in head]
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,

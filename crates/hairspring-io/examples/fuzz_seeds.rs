@@ -16,6 +16,8 @@ fn main() -> io::Result<()> {
         let (target, bytes) = match name {
             "hair-even" => ("hair", bytes),
             "obj-strands" => ("obj", bytes),
+            "glb-strands" | "glb-morph" => ("glb", bytes),
+            _ if name.starts_with("ply-") => ("ply", bytes),
             "tfx-3" | "tfx-4" => ("tfx", bytes),
             "rig" | "weights" => ("rig", rig.clone()),
             "toml" => ("scene", scene.clone()),

@@ -7,6 +7,7 @@
 //! it never allocates more than a small multiple of the size of its input.
 
 mod bytes;
+mod chains;
 mod error;
 mod external;
 mod frame_writer;
@@ -30,6 +31,7 @@ pub mod makehuman;
 pub mod obj;
 pub mod pc2;
 mod picture;
+pub mod ply;
 pub mod scene;
 pub mod tfx;
 pub mod tfxbone;

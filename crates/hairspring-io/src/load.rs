@@ -3,7 +3,7 @@
 use crate::{
     Character, Error, Motion, Problem, ReadOptions, Result, bvh,
     bytes::read_regular,
-    csv, external, gltf, hair, obj,
+    csv, external, gltf, hair, obj, ply,
     strands::Read,
     text, tfx, tfxbone, tfxmesh,
     units::{FileUnits, FitUnit, apply_to_body, extent, settle},
@@ -30,7 +30,7 @@ pub enum Format {
     TfxMesh,
     /// Wavefront `.obj`: a body, or a groom of polylines.
     Obj,
-    /// `.gltf`, `.glb` or `.vrm`: a body with motions.
+    /// `.gltf`, `.glb` or `.vrm`: a body with motions, or a groom of lines.
     Gltf,
     /// Biovision `.bvh`: a motion.
     Bvh,
@@ -42,6 +42,8 @@ pub enum Format {
     Pc2,
     /// `.csv`: a groom as a table of points.
     Csv,
+    /// `.ply`: a groom of polylines.
+    Ply,
     /// `.toml`: a scene.
     Scene,
 }
@@ -49,6 +51,9 @@ pub enum Format {
 impl Format {
     /// Formats that hold a groom. These can also be written.
     pub const GROOMS: [Format; 3] = [Format::Hair, Format::Tfx, Format::Usc];
+
+    /// Other formats that a groom is read from: curves or tables of points.
+    pub const CURVES: [Format; 4] = [Format::Obj, Format::Csv, Format::Ply, Format::Gltf];
 
     /// Formats that the Python package reads and writes.
     pub const EXTERNAL: [Format; 2] = [Format::Usd, Format::Alembic];
@@ -69,6 +74,7 @@ impl Format {
             "abc" => Self::Alembic,
             "pc2" => Self::Pc2,
             "csv" => Self::Csv,
+            "ply" => Self::Ply,
             "toml" => Self::Scene,
             _ => return None,
         })
@@ -89,6 +95,7 @@ impl Format {
             Self::Alembic => "abc",
             Self::Pc2 => "pc2",
             Self::Csv => "csv",
+            Self::Ply => "ply",
             Self::Scene => "toml",
         }
     }
@@ -112,8 +119,8 @@ pub struct Loaded<T> {
 /// Largest file that is read [bytes]: 4 GiB, about 300 million points.
 const MAX_FILE: u64 = 4 << 30;
 
-/// Reads a hairstyle from a `.hair`, `.tfx`, `.data` or `.csv` file, or from the polylines of an `.obj` file, and repairs it
-/// (`groom::sanitize`).
+/// Reads a hairstyle from a `.hair`, `.tfx`, `.data` or `.csv` file, or from the curves of an `.obj`, `.ply`, `.gltf`
+/// or `.glb` file, and repairs it (`groom::sanitize`).
 ///
 /// # Errors
 /// Returns an error if the file is missing, unreadable, of another kind, malformed or without strands.
@@ -127,7 +134,7 @@ pub(crate) fn read_groom_on(
     options: &ReadOptions,
     fit: Option<FitUnit<'_>>,
 ) -> Result<Loaded<Groom>> {
-    let known = [&Format::GROOMS[..], &[Format::Obj, Format::Csv], &Format::EXTERNAL].concat();
+    let known = [&Format::GROOMS[..], &Format::CURVES, &Format::EXTERNAL].concat();
     let format = format_of(path, &known, "a hairstyle")?;
     check_scale(path, options)?;
     let external = Format::EXTERNAL.contains(&format);
@@ -140,6 +147,8 @@ pub(crate) fn read_groom_on(
             Format::Tfx => tfx::read(&data),
             Format::Obj => obj::read_groom(&data),
             Format::Csv => csv::read(&data),
+            Format::Ply => ply::read(&data),
+            Format::Gltf => gltf::read_groom(&data, &|name| sibling(path, name)),
             _ => usc::read(&data),
         }
         .map_err(|p| p.in_file(path))?
@@ -215,6 +224,7 @@ fn in_meters(
     let extent = extent(character.body.mesh.positions.iter().copied());
     let (scale, turn) = settle(options, units, extent, &mut notes);
     apply_to_body(&mut character.body, &mut character.clips, scale, turn);
+    character.morphs.convert(scale, turn);
     if let Some(cache) = &mut character.vertex_cache {
         cache.frames.iter_mut().flatten().for_each(|p| *p = turn * (*p * scale));
     }
@@ -251,9 +261,15 @@ pub(crate) fn read_motion_at(
         make_printable(motion.joints.iter_mut().map(|joint| &mut joint.name).chain([&mut motion.clip.name]));
         return Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes: plain(notes) });
     }
-    let Loaded { value: character, scale, notes, .. } = read_character(path, options)?;
-    let clip = pick_clip(&character.clips, name).map_err(|text| Problem::whole(text).in_file(path))?.clone();
-    let motion = Motion { joints: character.body.joints, clip };
+    let Loaded { value: mut character, scale, mut notes, .. } = read_character(path, options)?;
+    let clip = pick_clip(&character.clips, name).map_err(|text| Problem::whole(text).in_file(path))?;
+    if character.morphs.moves(clip) {
+        notes.push(
+            "its animated morph targets are left out, because they move only the body of their own file; name the file as the body, too"
+                .into(),
+        );
+    }
+    let motion = Motion { joints: character.body.joints, clip: character.clips.swap_remove(clip) };
     Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes })
 }
 
@@ -268,15 +284,15 @@ pub fn read_bones(path: &Path) -> Result<tfxbone::RootBones> {
     Ok(bones)
 }
 
-/// Returns the clip called `name`, ignoring case, or the first if `name` is `None`. The error lists the
-/// available names.
-pub(crate) fn pick_clip<'a>(
-    clips: &'a [hairspring::body::Clip],
+/// Returns the index of the clip called `name`, ignoring case, or of the first if `name` is `None`. The error lists
+/// the available names.
+pub(crate) fn pick_clip(
+    clips: &[hairspring::body::Clip],
     name: Option<&str>,
-) -> std::result::Result<&'a hairspring::body::Clip, String> {
+) -> std::result::Result<usize, String> {
     let found = match name {
-        Some(name) => clips.iter().find(|c| c.name.eq_ignore_ascii_case(name)),
-        None => clips.first(),
+        Some(name) => clips.iter().position(|c| c.name.eq_ignore_ascii_case(name)),
+        None => (!clips.is_empty()).then_some(0),
     };
     found.ok_or_else(|| {
         let known: Vec<&str> = clips.iter().map(|c| c.name.as_str()).collect();

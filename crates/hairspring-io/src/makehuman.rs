@@ -76,7 +76,7 @@ pub fn parse(mesh: Mesh, rig: &[u8], weights: &[u8]) -> Result<Character, Proble
     }
     let (of, weights) = pairs.into_iter().map(four_heaviest).unzip();
     let skin = Skin { joints: of, weights, inverse_bind };
-    Ok(Character { body: Body { mesh, joints, skin: Some(skin) }, clips: Vec::new(), vertex_cache: None })
+    Ok(Character { body: Body { mesh, joints, skin: Some(skin) }, ..Character::default() })
 }
 
 fn json<'a, T: Deserialize<'a>>(data: &'a [u8], what: &str) -> Result<T, Problem> {

@@ -25,3 +25,6 @@ pub(crate) fn check_samples(frames: usize, joints: usize, place: Place) -> Resul
     }
     Ok(())
 }
+
+/// Largest number of positions of the vertices of a body over time: 1,500 frames of 100,000 vertices.
+pub(crate) const MAX_POSITIONS: usize = 150_000_000;

@@ -21,13 +21,13 @@ pub fn color_from_hex(text: &str) -> Option<Vec3> {
             3 => u8::from_str_radix(&digits[i..=i], 16).map(|v| v * 17),
             _ => return None,
         };
-        Some(linear(f32::from(value.ok()?) / 255.0))
+        Some(linear_from_srgb(f32::from(value.ok()?) / 255.0))
     };
     Some(Vec3::new(channel(0)?, channel(1)?, channel(2)?))
 }
 
-/// The linear value of an sRGB channel (IEC 61966-2-1).
-fn linear(v: f32) -> f32 {
+/// Returns the linear value of an sRGB channel, 0 to 1 (IEC 61966-2-1).
+pub fn linear_from_srgb(v: f32) -> f32 {
     if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }
 }
 

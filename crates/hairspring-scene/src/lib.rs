@@ -13,7 +13,7 @@ pub mod stage;
 mod vertex_cache;
 
 pub use camera::Camera;
-pub use color::{color_from_hex, deserialize_color, deserialize_optional_color};
+pub use color::{color_from_hex, deserialize_color, deserialize_optional_color, linear_from_srgb};
 pub use ground::Ground;
 pub use hand::Hand;
 pub use look::{HairColor, HairLook};

@@ -11,7 +11,7 @@ use std::{
 /// The kinds of file that open as a scene: title and extensions, for file dialogs.
 pub const KINDS: [(&str, &[&str]); 4] = [
     ("Scene", &["toml"]),
-    ("Groom", &["hair", "tfx", "data", "obj", "csv"]),
+    ("Groom", &["hair", "tfx", "data", "obj", "csv", "ply"]),
     ("Body", &["glb", "gltf", "vrm", "obj", "tfxmesh"]),
     ("Motion", &["bvh"]),
 ];
@@ -32,9 +32,13 @@ impl Role {
     fn of(path: &Path) -> Option<Self> {
         Some(match Format::of(path)? {
             Format::Scene => Self::Scene,
-            Format::Hair | Format::Tfx | Format::Usc | Format::Csv | Format::Usd | Format::Alembic => {
-                Self::Groom
-            }
+            Format::Hair
+            | Format::Tfx
+            | Format::Usc
+            | Format::Csv
+            | Format::Ply
+            | Format::Usd
+            | Format::Alembic => Self::Groom,
             Format::Obj if holds_polylines(path) => Self::Groom,
             Format::Obj | Format::Gltf | Format::TfxMesh => Self::Body,
             Format::Bvh => Self::Motion,
@@ -127,7 +131,7 @@ mod tests {
             path
         };
         let text = |path: &Path| Document::open_any(path, None).unwrap().text().to_owned();
-        for name in ["a.hair", "a.tfx", "a.data", "a.TFX"] {
+        for name in ["a.hair", "a.tfx", "a.data", "a.ply", "a.TFX"] {
             let text = text(&file(name, ""));
             assert!(text.contains("[[groom]]") && text.contains(name) && !text.contains("builtin"), "{text}");
         }

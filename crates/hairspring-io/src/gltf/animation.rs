@@ -3,9 +3,10 @@
 use super::{
     accessor::{Buffers, components},
     json::{Animation, Document, Interpolation, Path},
+    morph::{self, ClipWeights, Morphs, Object},
     skeleton::Skeleton,
 };
-use crate::{Place, Problem, bytes::with_room, motion::MAX_SAMPLES, text};
+use crate::{Problem, bytes::with_room, motion::MAX_SAMPLES, text};
 use glam::{Quat, Vec3, Vec4};
 use hairspring::body::{Clip, Trs};
 use std::{
@@ -49,6 +50,7 @@ struct Reader<'a> {
 /// Channels that are not read.
 #[derive(Default)]
 struct LeftOut {
+    /// Weights of an object without morph targets.
     morphs: usize,
     /// Without a joint, or of a property that an extension defines.
     others: usize,
@@ -56,22 +58,26 @@ struct LeftOut {
     repeated: usize,
 }
 
-/// Converts every animation to a clip of the skeleton's joints.
+/// Converts every animation to a clip of the skeleton's joints, and to weights of the morph targets of `objects`.
 pub(super) fn clips(
     document: &Document,
     buffers: &Buffers<'_>,
     skeleton: &Skeleton,
+    objects: Vec<Object>,
     notes: &mut Vec<String>,
-) -> Result<Vec<Clip>, Problem> {
+) -> Result<(Vec<Clip>, Morphs), Problem> {
     let mut reader = Reader { document, buffers, read: HashMap::new() };
+    let mut morphs = morph::Reader::new(document, buffers, objects);
     let mut left_out = LeftOut::default();
     let mut clips = Vec::new();
     let most = buffers.size().saturating_mul(SAMPLES_PER_BYTE).saturating_add(SAMPLES).min(MAX_SAMPLES);
     let mut samples_so_far = 0usize;
     for (index, animation) in document.animations.iter().enumerate() {
         let name = animation.name.as_deref().map_or_else(|| format!("animation{index}"), text::name);
-        let tracks = reader.tracks(animation, skeleton, &mut left_out)?;
-        let times = || tracks.iter().map(|t| &t.keys.times);
+        let mut weights = ClipWeights::default();
+        let tracks = reader.tracks(animation, skeleton, (&mut morphs, &mut weights), &mut left_out)?;
+        let of_weights = || weights.tracks.iter().map(|(_, keys)| morphs.times(*keys));
+        let times = || tracks.iter().map(|t| &t.keys.times[..]).chain(of_weights());
         let start = times().filter_map(|t| t.first()).copied().fold(f32::INFINITY, f32::min);
         let end = times().filter_map(|t| t.last()).copied().fold(f32::NEG_INFINITY, f32::max);
         if !(end - start).is_finite() {
@@ -87,7 +93,7 @@ pub(super) fn clips(
                 "animation {name:?} lasts {:.0} s and has {joint_count} joints, which is above the limit of {most} samples for a file of this size; shorten it, or export fewer animations",
                 end - start
             );
-            return Err(Problem::limit(Place::Whole, text));
+            return Err(Problem::limit(crate::Place::Whole, text));
         }
         let mut samples = with_room(frames * joint_count)?;
         for frame in 0..frames {
@@ -99,18 +105,19 @@ pub(super) fn clips(
             }
         }
         clips.push(Clip { name, rate: f64::from(RATE), joint_count, samples });
+        morphs.push(ClipWeights { start, ..weights });
     }
     left_out.note(notes);
-    Ok(clips)
+    Ok((clips, morphs.morphs))
 }
 
 impl LeftOut {
     fn note(&self, notes: &mut Vec<String>) {
         if self.morphs > 0 {
-            notes.push(
-                "animated morph targets are left out, and the shape keeps their default weights; animate joints instead"
-                    .into(),
-            );
+            let (channels, they_move) = left_out(self.morphs);
+            notes.push(format!(
+                "{channels}, because {they_move} morph targets that their object does not have; export the targets, too"
+            ));
         }
         if self.others > 0 {
             let (channels, they_move) = left_out(self.others);
@@ -134,11 +141,12 @@ fn left_out(count: usize) -> (String, &'static str) {
 }
 
 impl Reader<'_> {
-    /// Reads the channels that move a joint: one for each property of a joint.
+    /// Reads the channels that move a joint: one for each property of a joint. Those of weights are added to `weights`.
     fn tracks(
         &mut self,
         animation: &Animation,
         skeleton: &Skeleton,
+        (morphs, weights): (&mut morph::Reader<'_>, &mut ClipWeights),
         left_out: &mut LeftOut,
     ) -> Result<Vec<Track>, Problem> {
         let mut tracks = Vec::new();
@@ -152,9 +160,14 @@ impl Reader<'_> {
             }
             let joint = node.and_then(|node| skeleton.joint_of(node));
             match (property, joint) {
-                (Path::Weights, _) => left_out.morphs += 1,
                 (Path::Other, _) | (_, None) => left_out.others += 1,
                 (_, Some(joint)) if !moved.insert((joint, property)) => left_out.repeated += 1,
+                (Path::Weights, _) => {
+                    match morphs.track(animation, channel.sampler, node.unwrap_or_default())? {
+                        Some(track) => weights.tracks.push(track),
+                        None => left_out.morphs += 1,
+                    }
+                }
                 (_, Some(joint)) => {
                     let keys = self.keys(animation, channel.sampler, property)?;
                     tracks.push(Track { joint: joint as usize, property, keys });
@@ -220,10 +233,8 @@ impl Track {
 
     fn at(&self, time: f32) -> Vec4 {
         let Keys { interpolation, times, values } = &*self.keys;
-        let after = times.partition_point(|t| *t <= time);
-        let (i, j) = (after.saturating_sub(1), after.min(times.len() - 1));
-        let span = times[j] - times[i];
-        let t = if span > 0.0 { ((time - times[i]) / span).clamp(0.0, 1.0) } else { 0.0 };
+        let place = Place::new(times, time);
+        let (i, j, t) = (place.before, place.after, place.fraction);
         match interpolation {
             Interpolation::Step => values[i],
             Interpolation::Linear if self.property == Path::Rotation => {
@@ -235,13 +246,45 @@ impl Track {
             }
             Interpolation::Linear => values[i].lerp(values[j], t),
             Interpolation::CubicSpline => {
-                let (t2, t3) = (t * t, t * t * t);
-                let (out, into) = (values[3 * i + 2] * span, values[3 * j] * span);
-                values[3 * i + 1] * (2.0 * t3 - 3.0 * t2 + 1.0)
-                    + out * (t3 - 2.0 * t2 + t)
-                    + values[3 * j + 1] * (3.0 * t2 - 2.0 * t3)
-                    + into * (t3 - t2)
+                let parts = [values[3 * i + 1], values[3 * i + 2], values[3 * j + 1], values[3 * j]];
+                parts.into_iter().zip(place.cubic()).map(|(value, factor)| value * factor).sum()
             }
         }
+    }
+}
+
+/// The place of a time between two keys.
+pub(super) struct Place {
+    /// Index of the key at or before the time.
+    pub before: usize,
+    /// Index of the next key.
+    pub after: usize,
+    /// Fraction of the way from one to the other, 0 to 1.
+    pub fraction: f32,
+    /// Time between them [s].
+    span: f32,
+}
+
+impl Place {
+    /// Finds `time` [s] between sorted times, of which there is at least one.
+    pub(super) fn new(times: &[f32], time: f32) -> Self {
+        let next = times.partition_point(|t| *t <= time);
+        let (before, after) = (next.saturating_sub(1), next.min(times.len() - 1));
+        let span = times[after] - times[before];
+        let fraction = if span > 0.0 { ((time - times[before]) / span).clamp(0.0, 1.0) } else { 0.0 };
+        Self { before, after, fraction, span }
+    }
+
+    /// Factors of a cubic spline for the value and the out-tangent of the key before, and the value and the in-tangent of
+    /// the key after (glTF 2.0 appendix C.5).
+    pub(super) fn cubic(&self) -> [f32; 4] {
+        let t = self.fraction;
+        let (t2, t3) = (t * t, t * t * t);
+        [
+            2.0 * t3 - 3.0 * t2 + 1.0,
+            self.span * (t3 - 2.0 * t2 + t),
+            3.0 * t2 - 2.0 * t3,
+            self.span * (t3 - t2),
+        ]
     }
 }

@@ -117,6 +117,12 @@ pub(super) struct Attributes {
     pub uv: Option<usize>,
     #[serde(rename = "COLOR_0")]
     pub color: Option<usize>,
+    /// Of the points of lines; glTF leaves the meaning of attributes that begin with `_` to programs.
+    #[serde(rename = "_RADIUS")]
+    pub radius: Option<usize>,
+    /// Diameter of the points of lines.
+    #[serde(rename = "_WIDTH")]
+    pub width: Option<usize>,
     joints_0: Option<usize>,
     joints_1: Option<usize>,
     joints_2: Option<usize>,
@@ -198,7 +204,7 @@ pub(super) struct Sampler {
     pub interpolation: Interpolation,
 }
 
-#[derive(Clone, Copy, Default, Deserialize, Eq, Hash, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, Hash, PartialEq)]
 #[serde(rename_all = "UPPERCASE")]
 pub(super) enum Interpolation {
     #[default]

@@ -2,13 +2,15 @@
 
 use super::{
     accessor::{Buffers, accessor, colors, components},
-    json::{self, Attributes, Document, Primitive, Target, compressed},
+    json::{self, Attributes, Document, Path, Primitive, Target, compressed},
+    mesh_notes::LeftOut,
+    morph,
     skeleton::{Skeleton, SkinPlace},
 };
 use crate::{Place, Problem, bytes::with_room, obj::DEFAULT_COLOR, skin::four_heaviest, text};
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, Mat3A, Vec2, Vec3};
 use hairspring::body::{Mesh, Part};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Maximum number of vertices, and of triangles, of all meshes together. A file may use one array many times.
 const MAX_ELEMENTS: usize = 8_000_000;
@@ -16,8 +18,16 @@ const MAX_ELEMENTS: usize = 8_000_000;
 /// Vertices, and triangles, that a file of any size may have. A larger file may have one more for each byte.
 const ELEMENTS: usize = 1_000_000;
 
-/// A mesh, and four joints and weights for each vertex.
-type Skinned = (Mesh, Vec<[u16; 4]>, Vec<[f32; 4]>);
+/// A mesh, and what moves its vertices.
+pub(super) struct Moved {
+    pub mesh: Mesh,
+    /// Four joints of each vertex.
+    pub joints: Vec<[u16; 4]>,
+    /// The weights of these joints.
+    pub weights: Vec<[f32; 4]>,
+    /// The morph targets that animations move.
+    pub objects: Vec<morph::Object>,
+}
 
 /// Reads the meshes of all nodes of the scene.
 pub(super) fn read(
@@ -25,7 +35,9 @@ pub(super) fn read(
     buffers: &Buffers<'_>,
     skeleton: &Skeleton,
     notes: &mut Vec<String>,
-) -> Result<Skinned, Problem> {
+) -> Result<Moved, Problem> {
+    let channels = document.animations.iter().flat_map(|animation| &animation.channels);
+    let weights = channels.filter(|channel| channel.target.path == Path::Weights);
     let mut build = Build {
         document,
         buffers,
@@ -34,8 +46,11 @@ pub(super) fn read(
         mesh: Mesh::default(),
         joints: Vec::new(),
         weights: Vec::new(),
+        animated: weights.filter_map(|channel| channel.target.node).collect(),
+        targets: Vec::new(),
         left_out: LeftOut::default(),
     };
+    let mut objects = Vec::new();
     for (index, node) in document.nodes.iter().enumerate() {
         let Some(mesh) = node.mesh.filter(|_| skeleton.reached(index)) else { continue };
         let missing =
@@ -48,6 +63,9 @@ pub(super) fn read(
         for primitive in &named.primitives {
             build.primitive(&node, primitive, &mut shared)?;
         }
+        if !build.targets.is_empty() {
+            objects.push(morph::Object { node: index, targets: std::mem::take(&mut build.targets) });
+        }
     }
     build.left_out.note(notes);
     let Build { mut mesh, joints, weights, .. } = build;
@@ -57,7 +75,7 @@ pub(super) fn read(
         let given = given.into_iter().zip(&mut mesh.normals);
         given.filter(|(n, _)| *n != Vec3::ZERO).for_each(|(n, slot)| *slot = n);
     }
-    Ok((mesh, joints, weights))
+    Ok(Moved { mesh, joints, weights, objects })
 }
 
 /// A node that holds a mesh.
@@ -68,53 +86,16 @@ struct NodeOf<'a> {
     mesh_index: usize,
 }
 
-/// What a mesh consists of, except its triangles.
-type Vertices<'a> = (&'a Attributes, &'a [Target]);
-
-/// What is not read as the file has it.
-#[derive(Default)]
-struct LeftOut {
-    /// Nodes that draw copies of their mesh.
-    copies: usize,
-    /// Primitives of points and lines.
-    lines: usize,
-    /// Primitives without joints in a mesh with a skin.
-    rigid: usize,
-    /// Vertices with a skin but without a weight.
-    unweighted: usize,
-    /// Vertices that follow more than four joints.
-    crowded: usize,
-}
-
-impl LeftOut {
-    fn note(&self, notes: &mut Vec<String>) {
-        let mut note = |count: usize, text: &str| {
-            if count > 0 {
-                notes.push(format!("{count} {text}"));
-            }
-        };
-        note(
-            self.lines,
-            "primitives of lines or points are left out; convert them to triangles to keep them",
-        );
-        note(
-            self.copies,
-            "nodes draw copies of their mesh (EXT_mesh_gpu_instancing), of which one is read; export without instancing",
-        );
-        note(
-            self.rigid,
-            "primitives of a skinned mesh have no joints and move rigidly with their node; weight them to joints",
-        );
-        note(
-            self.unweighted,
-            "vertices of skinned meshes have no weight and follow one joint; weight them in the modeling program",
-        );
-        note(
-            self.crowded,
-            "vertices follow more than four joints, and the four largest weights are kept; limit the weights to four to choose them",
-        );
+impl NodeOf<'_> {
+    /// The default weights of its morph targets.
+    fn weights(&self) -> &[f32] {
+        let weights = self.node.weights.as_ref().or(self.mesh.weights.as_ref());
+        weights.map_or(&[][..], |w| w)
     }
 }
+
+/// What a mesh consists of, except its triangles.
+type Vertices<'a> = (&'a Attributes, &'a [Target]);
 
 /// The mesh under construction; primitives are appended one by one.
 struct Build<'a> {
@@ -126,6 +107,10 @@ struct Build<'a> {
     mesh: Mesh,
     joints: Vec<[u16; 4]>,
     weights: Vec<[f32; 4]>,
+    /// Nodes whose morph targets an animation moves.
+    animated: HashSet<usize>,
+    /// The morph targets of the current node, if an animation moves them.
+    targets: Vec<morph::Target>,
     left_out: LeftOut,
 }
 
@@ -205,12 +190,26 @@ impl<'a> Build<'a> {
         let turned = placed.matrix3.inverse().transpose();
         normals.iter_mut().for_each(|n| *n = (turned * *n).normalize_or_zero());
         positions.iter_mut().for_each(|p| *p = placed.transform_point3(*p));
-        match skin {
+        let corrections = match skin {
             Some(skin) => self.weigh(primitive, skin, &mut positions, &mut normals)?,
             None => {
                 self.joints.resize(first + count, [own_joint, 0, 0, 0]);
                 self.weights.resize(first + count, [1.0, 0.0, 0.0, 0.0]);
+                Vec::new()
             }
+        };
+        if self.animated.contains(&node.index) {
+            let rest = |v: usize, by: Vec3| {
+                let by = placed.matrix3 * by;
+                corrections.get(v).map_or(by, |correction| *correction * by)
+            };
+            morph::add_targets(
+                &mut self.targets,
+                (document, buffers),
+                (primitive, node.weights()),
+                (first, count),
+                rest,
+            )?;
         }
         self.mesh.positions.append(&mut positions);
         self.mesh.normals.append(&mut normals);
@@ -255,8 +254,7 @@ impl<'a> Build<'a> {
         positions: &mut [Vec3],
         normals: &mut [Vec3],
     ) -> Result<(), Problem> {
-        let weights = node.node.weights.as_ref().or(node.mesh.weights.as_ref());
-        let weights = weights.map_or(&[][..], |w| w);
+        let weights = node.weights();
         for (target, weight) in primitive.targets.iter().zip(weights).filter(|(_, w)| **w != 0.0) {
             for (accessor, values, what) in [
                 (target.position, &mut *positions, "positions of a morph target"),
@@ -279,16 +277,17 @@ impl<'a> Build<'a> {
     }
 
     /// Joints and weights of a skinned primitive's vertices: the four largest weights of all its sets. Moves the
-    /// vertices to the rest pose if it is not the bind pose of their skin.
+    /// vertices to the rest pose if it is not the bind pose of their skin, and returns the linear part of that for each
+    /// vertex.
     fn weigh(
         &mut self,
         primitive: &Primitive,
         skin: &SkinPlace,
         positions: &mut [Vec3],
         normals: &mut [Vec3],
-    ) -> Result<(), Problem> {
+    ) -> Result<Vec<Mat3A>, Problem> {
         let (document, buffers, count) = (self.document, self.buffers, positions.len());
-        let mut sets = Vec::new();
+        let (mut sets, mut linear) = (Vec::new(), Vec::new());
         for (joints, weights) in primitive.attributes.weight_sets() {
             sets.push((
                 components::<4>(document, joints, buffers, "joints")?,
@@ -328,11 +327,13 @@ impl<'a> Build<'a> {
                 };
                 positions[v] = sum(&|c| c.transform_point3(p));
                 normals[v] = sum(&|c| c.matrix3.inverse().transpose() * n).normalize_or_zero();
+                let parts = (0..4).filter_map(correction).map(|(c, w)| c.matrix3 * w);
+                linear.push(parts.fold(Mat3A::ZERO, |sum, part| sum + part));
             }
             self.joints.push(slots.map(joint_of));
             self.weights.push(weights);
         }
-        Ok(())
+        Ok(linear)
     }
 
     /// Appends the triangles of a primitive, which end a part of the mesh. `vertices` are the index of the first
@@ -420,7 +421,7 @@ impl<'a> Build<'a> {
 }
 
 /// Reads an accessor of vectors.
-fn vectors(
+pub(super) fn vectors(
     document: &Document,
     index: usize,
     buffers: &Buffers<'_>,

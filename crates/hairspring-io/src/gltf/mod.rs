@@ -2,20 +2,27 @@
 //! separate files.
 //!
 //! Every mesh follows its joints: skinned meshes by their weights, others rigidly with the node that holds
-//! them. Morph targets are applied with their default weights. Animations are resampled at 60 Hz. Textures,
-//! animated morph targets, cameras and lights are not read.
+//! them. Morph targets are applied with their default weights, and animations move them. Animations are resampled
+//! at 60 Hz. Textures, cameras and lights are not read. Where a groom is read, lines are its strands.
 
 mod accessor;
 mod animation;
 mod container;
+mod curves;
 mod json;
 mod mesh;
+mod mesh_notes;
+mod morph;
 mod skeleton;
 
-use crate::Problem;
+use crate::{Problem, strands::Read};
 use glam::Affine3A;
-use hairspring::body::{Body, Clip, Skin};
+use hairspring::{
+    body::{Body, Clip, Skin},
+    groom::Groom,
+};
 use hairspring_scene::VertexCache;
+pub use morph::Morphs;
 use skeleton::Skeleton;
 
 /// A body and the motions from the same file.
@@ -27,6 +34,8 @@ pub struct Character {
     pub clips: Vec<Clip>,
     /// Motion of its vertices, in files without a skeleton.
     pub vertex_cache: Option<VertexCache>,
+    /// Morph targets that the motions move.
+    pub morphs: Morphs,
 }
 
 /// Reads a glTF file, and returns notes about what was left out. The format is in meters, Y up. `sibling` returns
@@ -43,17 +52,27 @@ pub fn parse(
     let (document, buffers) = container::open(data, sibling)?;
     let mut notes = Vec::new();
     let skeleton = Skeleton::read(&document, &buffers, &mut notes)?;
-    let (mesh, joints, weights) = mesh::read(&document, &buffers, &skeleton, &mut notes)?;
-    let clips = animation::clips(&document, &buffers, &skeleton, &mut notes)?;
+    let mesh::Moved { mesh, joints, weights, objects } =
+        mesh::read(&document, &buffers, &skeleton, &mut notes)?;
+    let (clips, morphs) = animation::clips(&document, &buffers, &skeleton, objects, &mut notes)?;
     let skin = Skin { joints, weights, inverse_bind: skeleton.inverse_bind };
-    Ok((
-        Character {
-            body: Body { mesh, joints: skeleton.joints, skin: Some(skin) },
-            clips,
-            vertex_cache: None,
-        },
-        notes,
-    ))
+    let body = Body { mesh, joints: skeleton.joints, skin: Some(skin) };
+    Ok((Character { body, clips, morphs, vertex_cache: None }, notes))
+}
+
+/// Reads the lines of a glTF file as the strands of a groom, root first. The format is in meters, Y up. `sibling` returns the
+/// bytes of a file next to it, and is asked for each file once.
+///
+/// # Errors
+/// Returns an error for a file without lines, lines that branch or have no ends, and see [`parse`].
+pub fn parse_groom(data: &[u8], sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Groom, Problem> {
+    read_groom(data, sibling).map(Read::in_file_units)
+}
+
+/// Reads the lines of a glTF file.
+pub(crate) fn read_groom(data: &[u8], sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Read, Problem> {
+    let (document, buffers) = container::open(data, sibling)?;
+    curves::read(&document, &buffers)
 }
 
 /// Returns the transform, or `None` if it is singular or not finite.

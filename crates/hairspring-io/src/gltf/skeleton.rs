@@ -268,7 +268,7 @@ fn is_identity(correction: Affine3A) -> bool {
 
 /// Lists the nodes of the scene with parents first, the parent of each node, and which nodes are reached.
 #[allow(clippy::type_complexity)]
-fn walk(
+pub(super) fn walk(
     document: &Document,
     notes: &mut Vec<String>,
 ) -> Result<(Vec<usize>, Vec<Option<usize>>, Vec<bool>), Problem> {
@@ -337,7 +337,7 @@ fn needed(document: &Document, parents: &[Option<usize>], reached: &[bool]) -> R
 }
 
 /// The local transform of node `index`.
-fn local(node: &json::Node, index: usize) -> Result<Trs, Problem> {
+pub(super) fn local(node: &json::Node, index: usize) -> Result<Trs, Problem> {
     let trs = match &node.matrix {
         Some(matrix) => {
             let (scale, rotation, translation) =

@@ -21,7 +21,11 @@ impl Reader<'_> {
             character.vertex_cache = Some(self.vertex_cache(named, cache, &character.body)?);
         }
         for file in &named.more {
-            let piece = self.body(file, what)?.body;
+            let Character { body: piece, morphs, clips, .. } = self.body(file, what)?;
+            if (0..clips.len()).any(|clip| morphs.moves(clip)) {
+                let note = "its animated morph targets are left out; name the file as that of [body] itself";
+                self.note(&self.resolve(&file.file), vec![note.into()]);
+            }
             let carrier =
                 file.joint.as_deref().map(|name| self.joint(&character.body, name, file)).transpose()?;
             join(&mut character.body, piece, carrier);
@@ -59,7 +63,15 @@ impl Reader<'_> {
                 let text = format!("the part {}", unknown(wrong, known.iter().map(String::as_str)));
                 return Err(self.wrong(named.file.span().start, "parts", text));
             }
-            body.keep_parts(|name| parts.iter().any(|p| p == name));
+            let is_kept = |name: &str| parts.iter().any(|p| p == name);
+            let mut used = vec![false; body.mesh.positions.len()];
+            for part in body.mesh.parts.iter().filter(|part| is_kept(&part.name)) {
+                let triangles =
+                    &body.mesh.triangles[part.triangles.start as usize..part.triangles.end as usize];
+                triangles.iter().flatten().for_each(|v| used[*v as usize] = true);
+            }
+            body.keep_parts(is_kept);
+            character.morphs.keep(&used);
         }
         // Every file of a body gets at least one part, so that each keeps its own color.
         if body.mesh.parts.is_empty() {

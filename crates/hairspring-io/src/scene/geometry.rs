@@ -80,12 +80,12 @@ impl Reader<'_> {
             Some(named) => self.builtin(named)?,
             None => Scene::default(),
         };
-        let mut character = match (&file.body, made.body.take()) {
+        let character = match (&file.body, made.body.take()) {
             (Some(named), _) => Some(self.body(named, "body")?),
             (None, body) => body.map(|body| Character {
                 body,
                 clips: made.clip.take().into_iter().collect(),
-                vertex_cache: None,
+                ..Character::default()
             }),
         };
         let collision = file.collision.as_ref().map(|b| self.body(b, "collision mesh")).transpose()?;
@@ -100,9 +100,7 @@ impl Reader<'_> {
         for (groom, named) in scene.grooms[grown..].iter_mut().zip(&file.groom) {
             groom.groom = self.groom(named, &groom.materials, whole.as_ref())?;
         }
-        // A motion that the scene names replaces that of the vertices.
-        let cache = character.as_mut().and_then(|c| c.vertex_cache.take()).filter(|_| file.clip.is_none());
-        let (body, clip) = self.motion(file.clip.as_ref(), character, file.builtin.is_some())?;
+        let (body, clip, cache) = self.motion(file.clip.as_ref(), character, file.builtin.is_some())?;
         // The built-in collision mesh has the joints of the built-in body, unless the body is now one piece.
         let one_piece = body.as_ref().is_some_and(|b| b.joints.len() == 1);
         let made = made.collision.map(|c| if one_piece { body::rigid(c) } else { c });

@@ -11,23 +11,27 @@ use crate::{
     load::{pick_clip, read_motion_at},
 };
 use hairspring::body::{Body, Clip, HeadMotion, Key, Travel, head_motion, keyframe_clip, retarget};
+use hairspring_scene::VertexCache;
 
 impl Reader<'_> {
-    /// Returns the body as it is simulated, and its motion.
+    /// Returns the body as it is simulated, and its motion: that of its joints, or that of its vertices.
+    #[allow(clippy::type_complexity)]
     pub(super) fn motion(
         &mut self,
         named: Option<&ClipFile>,
         character: Option<Character>,
         builtin: bool,
-    ) -> Result<(Option<Body>, Option<Clip>)> {
+    ) -> Result<(Option<Body>, Option<Clip>, Option<VertexCache>)> {
         let Some(named) = named else {
             // A body file's motions are used only if a [clip] selects one. The built-in body uses its own
             // motion.
             return Ok(match character {
-                Some(c) if builtin => (Some(c.body), c.clips.into_iter().next()),
-                other => (other.map(|c| c.body), None),
+                Some(c) if builtin => (Some(c.body), c.clips.into_iter().next(), None),
+                Some(c) => (Some(c.body), None, c.vertex_cache),
+                None => (None, None, None),
             });
         };
+        // A motion that the scene names replaces that of the vertices.
         let near =
             named.file.as_ref().map_or_else(|| self.text.find("[clip]").unwrap_or(0), |f| f.span().start);
         let Some(character) = character else {
@@ -36,13 +40,10 @@ impl Reader<'_> {
         if !named.keys.is_empty() {
             let pivot = named.pivot.unwrap_or_default();
             let keys: Vec<Key> = named.keys.iter().map(KeyFile::key).collect();
-            return Ok((Some(rigid(character.body)), Some(keyframe_clip(&keys, pivot))));
+            return Ok((Some(rigid(character.body)), Some(keyframe_clip(&keys, pivot)), None));
         }
         let Some(file) = &named.file else {
-            let clip = pick_clip(&character.clips, named.name.as_deref());
-            let clip =
-                clip.map_err(|text| self.wrong(near, "name", format!("in the body's file {text}")))?.clone();
-            return Ok((Some(character.body), Some(self.cut(clip, named, near)?)));
+            return self.own_motion(character, named, near);
         };
         let path = self.resolve(file);
         let options = ReadOptions { scale: named.scale, up: named.up };
@@ -68,7 +69,7 @@ impl Reader<'_> {
                 ));
             }
             self.note(&path, notes);
-            return Ok((Some(character.body), Some(self.cut(carried.clip, named, near)?)));
+            return Ok((Some(character.body), Some(self.cut(carried.clip, named, near)?), None));
         };
         let Some(pivot) = named.pivot else {
             let text = "`joint` needs `pivot`: the point of the body that it turns about [m], such as the top of the neck";
@@ -89,7 +90,32 @@ impl Reader<'_> {
             let text = format!("the joint {}", unknown(joint, joints.iter().map(|j| j.name.as_str())));
             self.wrong(near, "joint", text)
         })?;
-        Ok((Some(rigid(character.body)), Some(self.cut(driven, named, near)?)))
+        Ok((Some(rigid(character.body)), Some(self.cut(driven, named, near)?), None))
+    }
+
+    /// Returns a body that a motion of its own file moves. A motion of morph targets becomes one of the vertices, which
+    /// takes the place of the joints.
+    #[allow(clippy::type_complexity)]
+    fn own_motion(
+        &mut self,
+        mut character: Character,
+        named: &ClipFile,
+        near: usize,
+    ) -> Result<(Option<Body>, Option<Clip>, Option<VertexCache>)> {
+        let wrong = |text: String| self.wrong(near, "name", format!("in the body's file {text}"));
+        let clip = pick_clip(&character.clips, named.name.as_deref()).map_err(wrong)?;
+        let cache = character.morphed(clip).map_err(wrong)?;
+        let clip = self.cut(character.clips.swap_remove(clip), named, near)?;
+        let Some(mut cache) = cache else { return Ok((Some(character.body), Some(clip), None)) };
+        let unused = cache.frames.len() - clip.frame_count();
+        cache.frames.drain(..unused);
+        self.notes.push(format!(
+            "the motion {:?} moves morph targets, so {} frames at {} Hz move the body's vertices, and the body has no joints",
+            clip.name,
+            cache.frames.len(),
+            cache.rate
+        ));
+        Ok((Some(rigid(character.body)), None, Some(cache)))
     }
 
     /// Returns the clip from the first used frame on.

@@ -4,7 +4,7 @@ use super::{
     Reader,
     file::{BodyFile, FileName},
 };
-use crate::{Format, ReadOptions, Result, load, pc2, read_body, units};
+use crate::{Format, ReadOptions, Result, load, motion::MAX_POSITIONS, pc2, read_body, units};
 use glam::Vec3;
 use hairspring::body::Body;
 use hairspring_scene::VertexCache;
@@ -12,9 +12,6 @@ use std::path::{Path, PathBuf};
 
 /// Frame rate if none is given [Hz].
 const RATE: f64 = 24.0;
-
-/// Largest number of vertex positions: 1,500 frames of 100,000 vertices.
-const MAX_POSITIONS: usize = 150_000_000;
 
 impl Reader<'_> {
     /// Reads the vertex cache `cache` of `body`, which the table `named` describes.

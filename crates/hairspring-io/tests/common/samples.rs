@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use hairspring::groom::Groom;
 use hairspring_io::{
-    Problem, bvh, gltf, hair, makehuman, obj, scene, tfx, tfxbone, tfxmesh, usc, write_groom,
+    Problem, bvh, gltf, hair, makehuman, obj, ply, scene, tfx, tfxbone, tfxmesh, usc, write_groom,
 };
 
 /// A format's name, a small file in it, and its reader.
@@ -43,8 +43,15 @@ pub fn all() -> Vec<Sample> {
         ("tfxmesh", skinned_mesh().into_bytes(), |b| tfxmesh::parse(b).map(drop)),
         ("obj", mesh().into_bytes(), |b| obj::parse(b).map(drop)),
         ("obj-strands", strands().into_bytes(), |b| obj::parse_groom(b).map(drop)),
+        ("ply-ascii", ply_edges("ascii"), |b| ply::parse(b).map(drop)),
+        ("ply-little", ply_edges("binary_little_endian"), |b| ply::parse(b).map(drop)),
+        ("ply-big", ply_edges("binary_big_endian"), |b| ply::parse(b).map(drop)),
+        ("ply-lists", PLY_LISTS.into(), |b| ply::parse(b).map(drop)),
+        ("ply-ids", PLY_IDS.into(), |b| ply::parse(b).map(drop)),
         ("bvh", motion().into_bytes(), |b| bvh::parse(b).map(drop)),
         ("glb", glb(), |b| gltf::parse(b, &|_| None).map(drop)),
+        ("glb-morph", glb_morph(), morphed),
+        ("glb-strands", glb_strands(), |b| gltf::parse_groom(b, &|_| None).map(drop)),
         ("rig", RIG.into(), |b| makehuman::parse(obj::parse(mesh().as_bytes())?, b, WEIGHTS).map(drop)),
         ("weights", WEIGHTS.into(), |b| makehuman::parse(obj::parse(mesh().as_bytes())?, RIG, b).map(drop)),
         ("toml", include_bytes!("../../../../docs/scene.md").to_vec(), |b| {
@@ -115,6 +122,57 @@ fn strands() -> String {
     "v 0 0 0\nv 0 1 0\nv 0 2 0.5\nvt 0.5\ng hair\nl 1/1 2 \\\n 3\nl -3 -1\n".into()
 }
 
+/// A PLY file of one face and two strands by edges: vertices 0, 2, 1 and 3, 4. Each property has another type.
+pub fn ply_edges(encoding: &str) -> Vec<u8> {
+    let header = format!(
+        "ply\nformat {encoding} 1.0\ncomment two strands\nelement vertex 5\nproperty double x\nproperty float y\n\
+         property short z\nproperty float radius\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n\
+         element face 1\nproperty list uchar int vertex_indices\n\
+         element edge 3\nproperty int vertex1\nproperty uint vertex2\nend_header\n"
+    );
+    let mut file = header.into_bytes();
+    let (text, big) = (encoding == "ascii", encoding == "binary_big_endian");
+    let mut add = |number: &str, mut bytes: Vec<u8>, last: bool| match text {
+        true => file.extend(format!("{number}{}", if last { "\n" } else { " " }).bytes()),
+        false => {
+            if big {
+                bytes.reverse();
+            }
+            file.extend(bytes);
+        }
+    };
+    for (i, (x, y)) in
+        [(0.25, 0.0), (0.5, 0.2), (0.25, 0.1), (-1.0, 0.0), (-1.0, 0.5)].into_iter().enumerate()
+    {
+        add(&x.to_string(), f64::to_le_bytes(x).into(), false);
+        add(&y.to_string(), f32::to_le_bytes(y).into(), false);
+        add("-3", i16::to_le_bytes(-3).into(), false);
+        add("0.00004", f32::to_le_bytes(0.00004).into(), false);
+        for (k, channel) in [0u8, 51 * i as u8, 255].into_iter().enumerate() {
+            add(&channel.to_string(), vec![channel], k == 2);
+        }
+    }
+    add("3", vec![3], false);
+    for i in 0..3i32 {
+        add(&i.to_string(), i.to_le_bytes().into(), i == 2);
+    }
+    for [a, b] in [[4i32, 3], [0, 2], [1, 2]] {
+        add(&a.to_string(), a.to_le_bytes().into(), false);
+        add(&b.to_string(), b.to_le_bytes().into(), true);
+    }
+    file
+}
+
+/// A PLY file whose strands are lists: vertices 2, 0 and 1, 2, 3.
+pub const PLY_LISTS: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n\
+    property float z\nproperty float width\nelement strand 3\nproperty list uchar int vertex_indices\nend_header\n\
+    0 0 0 0.0001\n1 0 0 0.0002\n2 0 0 0.0001\n3 0 0 0.0001\n2 2 0\n0\n3 1 2 3\n";
+
+/// A PLY file whose points have the number of their strand: 0 and 1, 2 and 3, 4.
+pub const PLY_IDS: &str = "ply\r\nformat ascii 1.0\r\nelement vertex 5\r\nproperty float x\r\nproperty float y\r\n\
+    property float z\r\nproperty int strand_id\r\nproperty float curl\r\nend_header\r\n\
+    0 0 0 7 0\r\n1 0 0 7 0\r\n2 0 0 -1 0\r\n3 0 0 -1 0\r\n4 0 0 7 0\r\n";
+
 fn motion() -> String {
     "HIERARCHY\nROOT Hips\n{\n OFFSET 0 1 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n\
      JOINT Head\n {\n OFFSET 0 0.5 0\n CHANNELS 3 Yrotation Xrotation Zrotation\n End Site\n {\n OFFSET 0 0.2 0\n }\n }\n}\n\
@@ -179,6 +237,58 @@ pub fn glb() -> Vec<u8> {
         views.join(","),
         bin.len()
     );
+    glb_of(json, &bin)
+}
+
+/// A GLB of lines of every mode, with a color, a radius and a node's transform.
+pub fn glb_strands() -> Vec<u8> {
+    let positions = [[0.0f32, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.2, 0.0], [0.1, 0.0, 0.0], [0.1, 0.1, 0.0]];
+    let mut bin: Vec<u8> = positions.concat().iter().flat_map(|v| v.to_le_bytes()).collect();
+    bin.extend([1u8, 0, 2, 1, 3, 4, 0, 0]); // Byte 60: indices of segments.
+    bin.extend([255u8, 0, 0, 255].repeat(5)); // Byte 68: colors.
+    bin.extend([0.00004f32; 5].iter().flat_map(|v| v.to_le_bytes())); // Byte 88: radii.
+    let attributes = r#""attributes":{"POSITION":0,"COLOR_0":2,"_RADIUS":3}"#;
+    let json = format!(
+        r#"{{"asset":{{"version":"2.0"}},"nodes":[{{"name":"fringe","mesh":0,"scale":[2,2,2],"children":[1]}},{{"mesh":1,"translation":[0,1,0]}}],
+"meshes":[{{"primitives":[{{"mode":1,{attributes},"indices":1}}]}},{{"name":"braid","primitives":[{{"mode":3,{attributes}}},{{"mode":2,{attributes}}}]}}],
+"accessors":[{{"bufferView":0,"componentType":5126,"count":5,"type":"VEC3"}},{{"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}},
+{{"bufferView":2,"componentType":5121,"normalized":true,"count":5,"type":"VEC4"}},{{"bufferView":3,"componentType":5126,"count":5,"type":"SCALAR"}}],
+"bufferViews":[{{"buffer":0,"byteLength":60}},{{"buffer":0,"byteOffset":60,"byteLength":6}},{{"buffer":0,"byteOffset":68,"byteLength":20}},{{"buffer":0,"byteOffset":88,"byteLength":20}}],
+"buffers":[{{"byteLength":108}}]}}"#
+    );
+    glb_of(json, &bin)
+}
+
+/// A GLB of a triangle with a default weight of two targets, which an animation moves.
+pub fn glb_morph() -> Vec<u8> {
+    let positions = [0.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let first_target = [0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.0, 0.0, 0.25];
+    // The last two vertices of the second target, two times, and two weights at each.
+    let rest = [0.0, 0.5, 0.0, 0.0, 0.5, 0.1, 0.0, 0.5, 0.0, 0.0, 0.0, 0.5];
+    let floats = [&positions[..], &first_target, &rest];
+    let mut bin: Vec<u8> = floats.concat().iter().flat_map(|v| v.to_le_bytes()).collect();
+    bin.extend([1u8, 2, 0, 0]);
+    let json = r#"{"asset":{"version":"2.0"},"nodes":[{"name":"face","mesh":0}],
+"meshes":[{"weights":[0.5,0],"primitives":[{"attributes":{"POSITION":0},"targets":[{"POSITION":1},{"POSITION":2}]}]}],
+"animations":[{"name":"smile","samplers":[{"input":3,"output":4}],"channels":[{"sampler":0,"target":{"node":0,"path":"weights"}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":1,"componentType":5126,"count":3,"type":"VEC3"},
+{"componentType":5126,"count":3,"type":"VEC3","sparse":{"count":2,"indices":{"bufferView":3,"componentType":5121},"values":{"bufferView":2}}},
+{"bufferView":2,"byteOffset":24,"componentType":5126,"count":2,"type":"SCALAR"},{"bufferView":2,"byteOffset":32,"componentType":5126,"count":4,"type":"SCALAR"}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":36},{"buffer":0,"byteOffset":72,"byteLength":48},{"buffer":0,"byteOffset":120,"byteLength":2}],
+"buffers":[{"byteLength":124}]}"#;
+    glb_of(json.into(), &bin)
+}
+
+/// Reads a glTF file and the vertices of its shorter motions.
+fn morphed(data: &[u8]) -> Result<(), Problem> {
+    let (character, _) = gltf::parse(data, &|_| None)?;
+    let short = (0..character.clips.len()).filter(|clip| character.clips[*clip].frame_count() < 1000);
+    short.for_each(|clip| drop(character.morphed(clip)));
+    Ok(())
+}
+
+/// A GLB of a document and its buffer.
+fn glb_of(json: String, bin: &[u8]) -> Vec<u8> {
     let mut json = json.into_bytes();
     json.resize(json.len().next_multiple_of(4), b' ');
     let mut file = b"glTF".to_vec();

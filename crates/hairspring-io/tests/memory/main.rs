@@ -6,7 +6,7 @@
 mod gltf_file;
 
 use gltf_file::GltfFile;
-use hairspring_io::{Problem, ReadOptions, gltf, obj, read_body, read_groom};
+use hairspring_io::{Problem, ReadOptions, gltf, obj, ply, read_body, read_groom};
 use serde_json::json;
 use std::{
     alloc::{GlobalAlloc, Layout, System},
@@ -86,6 +86,18 @@ fn memory_is_proportional_to_the_file_and_its_end_is_a_sentence() {
         "channels": [{"sampler": 0, "target": {"node": 0, "path": "scale"}}]}]);
     check("a long animation", &long.glb(), read_gltf);
 
+    let mut face = GltfFile::tetrahedron();
+    let positions = face.floats("VEC3", &vec![0.5; 30_000]);
+    face.primitive()["attributes"]["POSITION"] = json!(positions);
+    face.primitive()["targets"] = json!(vec![json!({"POSITION": positions}); 700]);
+    let (times, weights) = (face.floats("SCALAR", &[0.0]), face.floats("SCALAR", &[1.0; 700]));
+    face.json["animations"] = json!([{"samplers": [{"input": times, "output": weights}],
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}]}]);
+    check("morph targets that share an array", &face.glb(), |data| {
+        let (character, _) = gltf::parse(data, &|_| None)?;
+        character.morphed(0).map_err(|text| panic!("{text}")).map(drop)
+    });
+
     let read_obj = |data: &[u8]| obj::parse(data).map(drop);
     let ones = "1 ".repeat(500_000);
     check("a polygon", format!("v 0 0 0\nf {ones}").as_bytes(), read_obj);
@@ -98,6 +110,49 @@ fn memory_is_proportional_to_the_file_and_its_end_is_a_sentence() {
     });
     let utf16 = [&[0xff, 0xfe][..], &[0x0a, 0x0d].repeat(500_000)].concat();
     check("UTF-16", &utf16, read_obj);
+
+    let read_ply = |data: &[u8]| ply::parse(data).map(drop);
+    let rows = |rest: &str, rows: &[u8]| {
+        let header = format!(
+            "ply\nformat binary_little_endian 1.0\nelement vertex 500000\nproperty char x\nproperty char y\nproperty char z\n{rest}\nend_header\n"
+        );
+        [header.as_bytes(), rows].concat()
+    };
+    let path: Vec<u8> =
+        (0..500_000u32).flat_map(|k| [k.to_le_bytes(), (k + 1).to_le_bytes()].concat()).collect();
+    let path = [vec![0; 1_500_000], path].concat();
+    let edges = "element edge 499999\nproperty int vertex1\nproperty int vertex2";
+    check("points with the number of a strand", &rows("property char strand", &[1; 2_000_000]), read_ply);
+    check("edges", &rows(edges, &path[..path.len() - 8]), read_ply);
+    let lists = "element strand 500000\nproperty list uchar uchar vertex_indices";
+    check("lists of points", &rows(lists, &[1; 2_500_000]), read_ply);
+    check(
+        "a count without rows",
+        &rows(
+            "element strand 18446744073709551615\nproperty list uint int vertex_indices",
+            &[255; 1_500_008],
+        ),
+        read_ply,
+    );
+    let words = format!(
+        "ply\nformat ascii 1.0\nelement a 1\nproperty char b\nelement vertex 1\nproperty char x\nproperty char y\nproperty char z\nproperty char strand\nend_header\n{}",
+        "1 ".repeat(500_000)
+    );
+    check("a row of many words", words.as_bytes(), read_ply);
+
+    let read_lines = |data: &[u8]| gltf::parse_groom(data, &|_| None).map(drop);
+    for mode in [1, 2, 3] {
+        let zeros = format!(
+            r#""nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{{"mode":{mode},"attributes":{{"POSITION":0,"COLOR_0":0,"_RADIUS":1}}}}]}}],"accessors":[{{"componentType":5126,"count":900000,"type":"VEC3"}},{{"componentType":5126,"count":900000,"type":"SCALAR"}}]"#
+        );
+        check("lines of zeros", &document(&zeros), read_lines);
+    }
+    let primitive = r#"{"mode":3,"attributes":{"POSITION":0}}"#;
+    let copies = format!(
+        r#""nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[{}{primitive}]}}],"accessors":[{{"componentType":5126,"count":900000,"type":"VEC3"}}]"#,
+        format!("{primitive},").repeat(1000)
+    );
+    check("lines that share points", &document(&copies), read_lines);
 
     // No block above a megabyte: files of more, and arrays of files of less.
     let folder = tempfile::tempdir().unwrap();

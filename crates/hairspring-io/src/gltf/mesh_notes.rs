@@ -1,0 +1,46 @@
+//! Notes about what the mesh of a glTF file leaves out.
+
+/// What is not read as the file has it.
+#[derive(Default)]
+pub(super) struct LeftOut {
+    /// Nodes that draw copies of their mesh.
+    pub copies: usize,
+    /// Primitives of points and lines.
+    pub lines: usize,
+    /// Primitives without joints in a mesh with a skin.
+    pub rigid: usize,
+    /// Vertices with a skin but without a weight.
+    pub unweighted: usize,
+    /// Vertices that follow more than four joints.
+    pub crowded: usize,
+}
+
+impl LeftOut {
+    pub(super) fn note(&self, notes: &mut Vec<String>) {
+        let mut note = |count: usize, text: &str| {
+            if count > 0 {
+                notes.push(format!("{count} {text}"));
+            }
+        };
+        note(
+            self.lines,
+            "primitives of lines or points are left out; convert them to triangles to keep them",
+        );
+        note(
+            self.copies,
+            "nodes draw copies of their mesh (EXT_mesh_gpu_instancing), of which one is read; export without instancing",
+        );
+        note(
+            self.rigid,
+            "primitives of a skinned mesh have no joints and move rigidly with their node; weight them to joints",
+        );
+        note(
+            self.unweighted,
+            "vertices of skinned meshes have no weight and follow one joint; weight them in the modeling program",
+        );
+        note(
+            self.crowded,
+            "vertices follow more than four joints, and the four largest weights are kept; limit the weights to four to choose them",
+        );
+    }
+}

@@ -1,0 +1,188 @@
+//! Promise: the lines of a glTF file are strands where a groom is read: segments, strips and loops, placed by their
+//! nodes, with colors, radii and groups. A file without lines is an error that says what is expected.
+
+use crate::{
+    gltf_file::GltfFile,
+    samples::{glb, glb_strands},
+};
+use glam::Vec3;
+use hairspring_io::{Format, ReadOptions, gltf, read_groom, read_scene};
+use serde_json::{Value, json};
+use std::fs;
+
+/// A file of one node with the primitives that `primitives` makes of an accessor of points at x = 0, 0.1, 0.2, ….
+fn lines(points: u8, primitives: impl FnOnce(&mut GltfFile, usize) -> Value) -> GltfFile {
+    let mut file = GltfFile::default();
+    let positions: Vec<f32> = (0..points).flat_map(|k| [0.1 * f32::from(k), 0.0, 0.0]).collect();
+    let positions = file.floats("VEC3", &positions);
+    let primitives = primitives(&mut file, positions);
+    file.push("meshes", json!({"primitives": primitives}));
+    file.json["nodes"] = json!([{"mesh": 0}]);
+    file.json["scenes"][0]["nodes"] = json!([0]);
+    file
+}
+
+fn error(file: &GltfFile) -> String {
+    gltf::parse_groom(&file.glb(), &|_| None).unwrap_err().to_string()
+}
+
+/// Reads a groom from a file with these bytes, and its notes.
+fn read(name: &str, bytes: &[u8]) -> (hairspring::groom::Groom, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    fs::write(&path, bytes).unwrap();
+    let loaded = read_groom(&path, &ReadOptions::default()).unwrap();
+    assert_eq!((loaded.format, loaded.scale), (Format::Gltf, 1.0));
+    (loaded.value, loaded.notes)
+}
+
+#[test]
+fn segments_strips_and_loops_are_strands_in_the_place_of_their_nodes() {
+    let groom = gltf::parse_groom(&glb_strands(), &|_| None).unwrap();
+    // Segments 1-0, 2-1 and 3-4 are joined; then a strip and a loop of all five points.
+    assert_eq!(groom.offsets, [0, 3, 5, 10, 15]);
+    let point = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+    assert_eq!(groom.strand(0), [point(0.0, 0.0), point(0.0, 0.2), point(0.0, 0.4)]);
+    assert_eq!(groom.strand(1), [point(0.2, 0.0), point(0.2, 0.2)]);
+    // The child node is moved by 1 in its parent, which doubles everything.
+    assert_eq!(groom.strand(2)[..2], [point(0.0, 2.0), point(0.0, 2.2)]);
+    assert_eq!(groom.strand(3), groom.strand(2));
+    assert_eq!(groom.colors, [Vec3::X; 15]);
+    assert_eq!(groom.radii, [0.00008; 15]);
+    assert_eq!(
+        (&groom.groups[..], &groom.group_names[..]),
+        (&[0, 0, 1, 1][..], &["fringe".into(), "braid".into()][..])
+    );
+    let (_, notes) = read("a.glb", &glb_strands());
+    assert_eq!(notes, ["1 closed lines (LINE_LOOP) are opened at their first point, which is the root"]);
+}
+
+#[test]
+fn segments_with_points_of_their_own_are_joined() {
+    let mut file = GltfFile::default();
+    let ends = [0.0, 0.1, 0.1, 0.2, 0.2, 0.3, 0.7, 0.8].map(|x| [x, 0.0, 0.0]).concat();
+    let positions = file.floats("VEC3", &ends);
+    file.push("meshes", json!({"primitives": [{"mode": 1, "attributes": {"POSITION": positions}}]}));
+    file.json["nodes"] = json!([{"mesh": 0}]);
+    let groom = gltf::parse_groom(&file.glb(), &|_| None).unwrap();
+    assert_eq!(groom.offsets, [0, 4, 6]);
+    assert_eq!(groom.points.iter().map(|p| p.x).collect::<Vec<_>>(), [0.0, 0.1, 0.2, 0.3, 0.7, 0.8]);
+    assert_eq!(groom.group_names, ["node0"]);
+}
+
+#[test]
+fn a_width_is_twice_the_radius_and_a_color_has_three_channels_or_four() {
+    let file = lines(3, |file, positions| {
+        let widths = file.floats("SCALAR", &[0.0001, 0.0001, 0.00008]);
+        let colors = file.floats("VEC3", &[0.5, 0.25, 2.0, 0.5, 0.25, 0.0, 0.5, 0.25, 0.0]);
+        json!([{"mode": 3, "attributes": {"POSITION": positions, "COLOR_0": colors, "_WIDTH": widths}}])
+    });
+    let (groom, notes) = read("a.glb", &file.glb());
+    assert_eq!(groom.radii, [0.00005, 0.00005, 0.00004]);
+    assert_eq!(
+        groom.colors,
+        [Vec3::new(0.5, 0.25, 1.0), Vec3::new(0.5, 0.25, 0.0), Vec3::new(0.5, 0.25, 0.0)]
+    );
+    assert!(notes.is_empty(), "{notes:?}");
+}
+
+#[test]
+fn many_strands_may_share_the_arrays_of_points() {
+    // Each strand is a primitive with two indices of its own in the same 60,000 points.
+    let mut file = GltfFile::default();
+    let positions: Vec<f32> = (0..60_000u32).flat_map(|k| [0.001 * k as f32, 0.0, 0.0]).collect();
+    let positions = file.floats("VEC3", &positions);
+    let primitives: Vec<Value> = (0..2_000u16)
+        .map(|k| {
+            let indices =
+                file.bytes(5123, "SCALAR", 2, &[(2 * k).to_le_bytes(), (2 * k + 1).to_le_bytes()].concat());
+            json!({"mode": 1, "attributes": {"POSITION": positions}, "indices": indices})
+        })
+        .collect();
+    file.push("meshes", json!({"primitives": primitives}));
+    file.json["nodes"] = json!([{"mesh": 0}]);
+    let groom = gltf::parse_groom(&file.glb(), &|_| None).unwrap();
+    assert_eq!((groom.strand_count(), groom.point_count()), (2_000, 4_000));
+}
+
+#[test]
+fn what_is_left_out_is_noted() {
+    let file = lines(3, |file, positions| {
+        let radii = file.floats("SCALAR", &[0.00005; 3]);
+        json!([
+            {"mode": 3, "attributes": {"POSITION": positions, "COLOR_0": positions, "_RADIUS": radii}},
+            {"mode": 3, "attributes": {"POSITION": positions}, "targets": [{"POSITION": positions}]},
+            {"mode": 4, "attributes": {"POSITION": positions}},
+        ])
+    });
+    let mut file = file;
+    file.json["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing": {}});
+    let (groom, notes) = read("a.glb", &file.glb());
+    assert_eq!(groom.strand_count(), 2);
+    assert!(groom.colors.is_empty());
+    for text in [
+        "1 primitives of triangles or points",
+        "1 primitives of lines have a skin",
+        "no COLOR_0",
+        "no _RADIUS",
+        "1 nodes draw copies",
+    ] {
+        assert_eq!(notes.iter().filter(|note| note.contains(text)).count(), 1, "{text}: {notes:?}");
+    }
+}
+
+#[test]
+fn more_objects_than_groups_are_one_group() {
+    let mut file = lines(2, |_, positions| json!([{"mode": 3, "attributes": {"POSITION": positions}}]));
+    file.json["scenes"] = json!([]);
+    file.json.as_object_mut().unwrap().remove("scene");
+    let nodes = |count: usize| json!((0..count).map(|_| json!({"mesh": 0})).collect::<Vec<_>>());
+    file.json["nodes"] = nodes(65_536);
+    let (groom, notes) = read("a.glb", &file.glb());
+    assert!(groom.groups.last() == Some(&u16::MAX) && notes.is_empty(), "{notes:?}");
+    file.json["nodes"] = nodes(65_537);
+    let (groom, notes) = read("b.glb", &file.glb());
+    assert!(groom.groups.is_empty() && groom.group_names.is_empty() && groom.strand_count() == 65_537);
+    assert!(notes[0].contains("65537 objects are more than the limit of 65,536 groups"), "{notes:?}");
+}
+
+#[test]
+fn a_file_without_strands_says_what_is_expected() {
+    let text = gltf::parse_groom(&glb(), &|_| None).unwrap_err().to_string();
+    assert!(
+        text.starts_with(
+            "the file has 2 primitives of triangles or points but no lines: a hairstyle is read from"
+        ),
+        "{text}"
+    );
+    assert!(
+        error(&GltfFile::default()).starts_with("the file has no lines: a hairstyle is read from primitives")
+    );
+    let segments = |pairs: &'static [u8]| {
+        lines(4, |file, positions| {
+            let indices = file.bytes(5121, "SCALAR", pairs.len(), pairs);
+            json!([{"mode": 1, "attributes": {"POSITION": positions}, "indices": indices}])
+        })
+    };
+    assert!(error(&segments(&[0, 1, 1, 2, 1, 3])).contains("vertex 1 has more than two edges"));
+    assert!(error(&segments(&[0, 1, 1, 2, 2, 0])).contains("form a loop"));
+    assert!(error(&segments(&[0, 4])).contains("a line names vertex 4 of an object of 4"));
+    let uneven = lines(3, |file, positions| {
+        let radii = file.floats("SCALAR", &[0.1; 2]);
+        json!([{"mode": 3, "attributes": {"POSITION": positions, "_RADIUS": radii}}])
+    });
+    assert!(error(&uneven).contains("lines have 3 positions but 2 radii"));
+}
+
+#[test]
+fn a_scene_reads_the_lines_of_a_gltf_file() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("hair.glb"), glb_strands()).unwrap();
+    let scene = folder.path().join("a.toml");
+    fs::write(&scene, "[[groom]]\nfile = \"hair.glb\"\n").unwrap();
+    let groom = &read_scene(&scene).unwrap().value.grooms[0].groom;
+    assert_eq!(
+        (groom.strand_count(), &groom.group_names[..]),
+        (4, &["fringe".to_owned(), "braid".into()][..])
+    );
+}
