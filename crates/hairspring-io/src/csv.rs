@@ -7,11 +7,19 @@
 //! 1,0.01,0.1,0.0,0.00004
 //! ```
 //!
-//! `strand` (or `curve`, `id`), `x`, `y` and `z` are required; `radius` or `width`, and `r`, `g`, `b` (linear, 0 to 1) are optional;
-//! other columns are ignored with a note. Columns are separated by commas, semicolons or tabs. The points of a strand are
-//! consecutive, root first.
+//! `strand` (or `curve`, `id`), `x`, `y` and `z` are required; `radius` or `width`, and `r`, `g`, `b` (linear, 0 to 1) are optional.
+//! The first point of a strand may give attributes of the whole strand: `group`, `guide` (0 or 1), `u` and `v` of the root,
+//! `density` (the share of the strands around it that is kept), and the factors `stiffness`, `damping`, `drag`, `friction`
+//! and `charge` of the material. Other columns are ignored with a note. Columns are separated by commas, semicolons or
+//! tabs. The points of a strand are consecutive, root first.
 
-use crate::{Place, Problem, strands::Read, text::as_text, units::FileUnits};
+use crate::{
+    Place, Problem,
+    strand_attributes::{GROUP, NUMBERS, StrandAttributes},
+    strands::Read,
+    text::{as_text, name},
+    units::FileUnits,
+};
 use glam::Vec3;
 use hairspring::groom::Groom;
 
@@ -36,6 +44,9 @@ struct Columns {
     /// Column of the radius, and its factor: 0.5 for a width.
     radius: Option<(usize, f32)>,
     color: Option<[usize; 3]>,
+    /// Columns of the attributes of whole strands, by their index in [`NUMBERS`].
+    numbers: Vec<(usize, usize)>,
+    group: Option<usize>,
     count: usize,
 }
 
@@ -48,7 +59,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let mut notes = Vec::new();
     let columns = columns(header, separator, &mut notes)?;
     let mut groom = Groom { offsets: vec![0], ..Groom::default() };
-    let (mut radii, mut last) = (Vec::new(), None);
+    let (mut radii, mut last, mut attributes) = (Vec::new(), None, StrandAttributes::default());
     for (number, line) in lines {
         let wrong = |text: String| Problem::new(Place::Line(number), text);
         let cells: Vec<&str> = line.split(separator).map(str::trim).collect();
@@ -68,6 +79,18 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         if last.is_some_and(|last| last != strand) {
             groom.offsets.push(groom.points.len() as u32);
         }
+        if last != Some(strand) {
+            for (attribute, k) in &columns.numbers {
+                let value = cell(*k)?;
+                let coordinate = ["u", "v"].contains(&NUMBERS[*attribute]);
+                if !(value.is_finite() && (coordinate || value >= 0.0)) {
+                    let text = format!("`{}` is {}; it must be 0 or more", NUMBERS[*attribute], cells[*k]);
+                    return Err(wrong(text));
+                }
+                attributes.numbers[*attribute].push(value);
+            }
+            attributes.groups.extend(columns.group.map(|k| name(cells[k].trim_matches('"'))));
+        }
         last = Some(strand);
         groom.points.push(vector(columns.position)?);
         if let Some((k, factor)) = columns.radius {
@@ -81,7 +104,9 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         groom.offsets.push(groom.points.len() as u32);
     }
     let radii = columns.radius.map(|_| radii);
-    Ok(Read { groom, radii, true_radii: false, units: FileUnits::default(), notes })
+    let mut read = Read { groom, radii, true_radii: false, units: FileUnits::default(), notes };
+    attributes.apply(&mut read);
+    Ok(read)
 }
 
 fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Columns, Problem> {
@@ -102,6 +127,8 @@ fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Col
         position: [required(&["x"])?, required(&["y"])?, required(&["z"])?],
         radius,
         color: if let [Some(r), Some(g), Some(b)] = color { Some([r, g, b]) } else { None },
+        numbers: NUMBERS.iter().enumerate().filter_map(|(a, name)| Some((a, find(&[name])?))).collect(),
+        group: find(&[GROUP]),
         count: names.len(),
     };
     let used = |k: usize| {
@@ -109,6 +136,8 @@ fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Col
             || columns.position.contains(&k)
             || columns.radius.is_some_and(|(r, _)| r == k)
             || columns.color.is_some_and(|c| c.contains(&k))
+            || columns.numbers.iter().any(|(_, column)| *column == k)
+            || columns.group == Some(k)
     };
     let ignored: Vec<&str> = (0..names.len()).filter(|k| !used(*k)).map(|k| names[k].as_str()).collect();
     if !ignored.is_empty() {
@@ -133,11 +162,29 @@ mod tests {
     }
 
     #[test]
+    fn attributes_of_strands_are_those_of_their_first_point() {
+        let table = "strand,x,y,z,radius,group,guide,stiffness,friction,density,u,v\n\
+                     a,0,0,0,1e-5,top,1,2,0.5,1,0.25,0.75\na,0,1,0,2e-5,top,1,9,9,9,9,9\n\
+                     b,1,0,0,3e-5,side,0,3,1,1,0.5,0.5\nb,1,1,0,4e-5,,,0,0,0,0,0\n\
+                     c,2,0,0,5e-5,top,0,4,1,0,1,1\nc,2,1,0,6e-5,top,0,4,1,0,1,1\n";
+        // The cells of later points may be anything, also empty.
+        let read = read(table.as_bytes()).unwrap();
+        let groom = &read.groom;
+        assert_eq!((groom.strand_count(), groom.groups.as_slice()), (2, &[0, 1][..]), "the last one has density 0");
+        assert_eq!((groom.group_names.as_slice(), read.notes.len()), (&["top".to_owned(), "side".into()][..], 0));
+        assert_eq!([0, 1].map(|s| (groom.scale(s).bend, groom.scale(s).friction)), [(2.0, 0.5), (3.0, 1.0)]);
+        assert_eq!(groom.root_uvs, [glam::Vec2::new(0.25, 0.75), glam::Vec2::splat(0.5)]);
+        assert_eq!(groom.guides.iter().map(|g| g.guides[0]).collect::<Vec<_>>(), [0, 0]);
+        assert_eq!(read.radii.unwrap(), [1e-5, 2e-5, 3e-5, 4e-5]);
+    }
+
+    #[test]
     fn what_is_wrong_is_named_with_its_line() {
         let error = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
         assert!(error("strand,x,y\n").contains("no column `z`"));
         assert!(error("strand,x,y,z\n0,1,2\n").contains("3 columns"));
         assert!(error("strand,x,y,z\n0,1,2,a\n").contains("column 4"));
         assert!(error("").contains("empty"));
+        assert!(error("strand,x,y,z,drag\n0,1,2,3,-1\n").contains("line 2: `drag` is -1; it must be 0 or more"));
     }
 }

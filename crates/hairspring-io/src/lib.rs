@@ -18,6 +18,7 @@ mod polygon;
 mod save;
 mod skin;
 mod skin_distance;
+mod strand_attributes;
 mod strands;
 mod text;
 mod tfx_text;

@@ -1,8 +1,8 @@
 //! Strands from the lines of a glTF file (glTF 2.0 §3.7.2.1): primitives of the modes LINES, LINE_STRIP and LINE_LOOP.
 
 use super::{
-    accessor::{Buffers, accessor, components},
-    json::{Document, Node, Primitive, Shape},
+    accessor::{Buffers, accessor, colors, components},
+    json::{Document, Node, Primitive},
     skeleton::{local, walk},
 };
 use crate::{
@@ -154,7 +154,7 @@ impl Build<'_> {
         for v in order.into_iter().map(|v| v as usize) {
             self.groom.points.push(world.transform_point3(positions[v]));
             let color = colors.as_ref().map_or(Vec3::ONE, |colors| colors[v]);
-            self.groom.colors.push(color.clamp(Vec3::ZERO, Vec3::ONE));
+            self.groom.colors.push(color);
             self.radii.push(radii.as_ref().map_or(0.0, |(radii, factor)| radii[v] * factor * size));
         }
         let first = self.groom.offsets.last().copied().unwrap_or(0);
@@ -191,22 +191,17 @@ impl Build<'_> {
         chains::join(&segments)
     }
 
-    /// Reads vectors of three components; those of four lose the last.
+    /// Reads vectors.
     fn vectors(&mut self, index: usize, what: &str) -> Result<Rc<Vec<Vec3>>, Problem> {
         if let Some(read) = self.vectors.get(&index) {
             return Ok(read.clone());
         }
         let (document, buffers) = (self.document, self.buffers);
-        let vector = |x: f64, y: f64, z: f64| Vec3::new(x as f32, y as f32, z as f32);
-        let read: Vec<Vec3> = match accessor(document, index, what)?.shape {
-            Shape::Vec4 if what == "colors" => {
-                let read = components::<4>(document, index, buffers, what)?;
-                read.into_iter().map(|[x, y, z, _]| vector(x, y, z)).collect()
-            }
-            _ => {
-                let read = components::<3>(document, index, buffers, what)?;
-                read.into_iter().map(|[x, y, z]| vector(x, y, z)).collect()
-            }
+        let read: Vec<Vec3> = if what == "colors" {
+            colors(document, index, buffers)?
+        } else {
+            let read = components::<3>(document, index, buffers, what)?;
+            read.into_iter().map(|[x, y, z]| Vec3::new(x as f32, y as f32, z as f32)).collect()
         };
         let read = Rc::new(read);
         self.vectors.insert(index, read.clone());

@@ -18,7 +18,7 @@ define_settings! {
         /// Name of the groom in lists.
         name: Option<String>, "none", {text "any text"}, default "the file's name";
         /// File of the strands.
-        file: Option<FileName>, "none", {text "`.hair`, `.tfx`, `.data`, `.obj`, `.csv`; with the Python package `.usd`, `.abc`"}, default "required, or `grow`";
+        file: Option<FileName>, "none", {text "`.hair`, `.tfx`, `.data`, `.obj`, `.csv`, `.ply`, `.glb`, `.gltf`; with the Python package `.usd`, `.abc`"}, default "required, or `grow`";
         /// Hair grown from the body, used instead of a file.
         grow: Option<Spanned<GrowFile>>, "none", {table};
         /// Follow hairs added around each strand.

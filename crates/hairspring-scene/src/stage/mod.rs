@@ -4,8 +4,10 @@
 mod body;
 mod body_pose;
 mod charged;
+mod check;
 mod clock;
 mod fast_surface;
+mod figures;
 mod forces;
 mod hair;
 mod initial_push;
@@ -24,14 +26,16 @@ mod update_settings;
 mod values;
 mod wind;
 
+pub use check::StageError;
 pub use clock::FrameRate;
 pub use starts_inside::StartsInside;
 pub use state::StageState;
 pub use thickness::ThinMesh;
 pub use values::{Picked, StrandFigures, Value};
 
-use crate::{HairLook, Scene, SceneError};
+use crate::{HairLook, Scene};
 use body::StagedBody;
+use check::check;
 use clock::Clock;
 use glam::Vec3;
 use hair::StagedHair;
@@ -40,100 +44,14 @@ use hairspring::{
     collide::{ColliderShape, MovingCollider},
     follow::HairInterpolation,
     forces::Manipulator,
-    groom::{Groom, Imprecise, MAX_COORDINATE, bind_roots, first_imprecise},
+    groom::{Groom, bind_roots},
     math::RigidTransform,
-    simulation::{
-        Contacts, Energy, ManipulatorId, Measure, NeighboursReport, Simulation, Start, StepInput, StepReport,
-        VolumeReport,
-    },
+    simulation::{ManipulatorId, Simulation, StepInput, StepReport},
 };
 use joints::Joints;
 use manipulators::StagedHands;
 use std::time::{Duration, Instant};
 use wind::StagedWind;
-
-/// Errors of a scene that cannot be played.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum StageError {
-    /// The scene has no strands at all.
-    #[error("the scene has no hair: add a groom with at least one strand")]
-    NoHair,
-    /// A strand cannot be simulated.
-    #[error(
-        "strand {strand} of groom {groom} has {points} points, and 3 are needed: run `groom::sanitize` first"
-    )]
-    ShortStrand {
-        /// Index of the groom in the scene.
-        groom: usize,
-        /// Index of the strand.
-        strand: usize,
-        /// Number of points that it has.
-        points: usize,
-    },
-    /// The clip does not belong to the body.
-    #[error(
-        "the clip '{clip}' moves {clip_joints} joints, and the body has {body_joints}: retarget it to the body"
-    )]
-    JointCount {
-        /// Name of the clip.
-        clip: String,
-        /// Number of joints in the clip.
-        clip_joints: usize,
-        /// Joints of the body.
-        body_joints: usize,
-    },
-    /// A frame of the vertex cache has another number of vertices than the body.
-    #[error(
-        "frame {frame} of the vertex cache has {vertices} vertices, and the body has {expected}: export the motion without \
-         changes of topology"
-    )]
-    VertexCount {
-        /// Index of the frame.
-        frame: usize,
-        /// Number of its vertices.
-        vertices: usize,
-        /// Number of the body's vertices.
-        expected: usize,
-    },
-    /// The vertex cache cannot move the body.
-    #[error("the vertex cache cannot be used: {0}")]
-    VertexCache(&'static str),
-    /// The settings have another number of grooms than the stage.
-    #[error(
-        "the settings have {settings} grooms, but the stage has {grooms}: create a new stage for other grooms"
-    )]
-    GroomCount {
-        /// Number of grooms in the settings.
-        settings: usize,
-        /// Number of grooms on the stage.
-        grooms: usize,
-    },
-    /// A setting is out of range.
-    #[error(transparent)]
-    Settings(#[from] SceneError),
-    /// A strand is too far from the origin for single precision.
-    #[error("groom {groom}: {why}")]
-    TooFar {
-        /// Index of the groom in the scene.
-        groom: usize,
-        /// The strand and its distance.
-        why: Imprecise,
-    },
-    /// A coordinate or length is not finite or too large.
-    #[error("{what} is not finite or exceeds {MAX_COORDINATE} m, the largest length that is simulated")]
-    OutOfRange {
-        /// Description of the item.
-        what: String,
-    },
-    /// An item names a joint that does not exist.
-    #[error("{what} follows the joint '{joint}', and the body has none of that name")]
-    NoSuchJoint {
-        /// Description of the item that names the joint.
-        what: &'static str,
-        /// Name of the joint.
-        joint: String,
-    },
-}
 
 /// Results and timings of a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -421,120 +339,5 @@ impl Stage {
     /// Returns the body in its current pose; `None` for a scene without one.
     pub fn body(&self) -> Option<PosedBody<'_>> {
         self.body.pose().posed(&self.scene)
-    }
-
-    /// Returns the number of simulated strands and the total number.
-    pub fn simulated_strands(&self) -> (usize, usize) {
-        let all = self.hair.iter().map(|h| h.groom().strand_count()).sum();
-        (self.simulation.strand_count(), all)
-    }
-
-    /// Returns the number of simulated points and the total number.
-    pub fn simulated_points(&self) -> (usize, usize) {
-        let all = self.hair.iter().map(|h| h.groom().point_count()).sum();
-        (self.simulation.point_count(), all)
-    }
-
-    /// Returns the number of joints that the sag-free start made stiffer than the fiber, and of those that
-    /// are softer than needed.
-    pub fn start(&self) -> Start {
-        self.simulation.start()
-    }
-
-    /// Returns a report of the hair's volume; `None` if strands pass through each other.
-    pub fn volume(&self) -> Option<VolumeReport> {
-        self.simulation.volume()
-    }
-
-    /// Returns a report of the contacts between strands; `None` if they are off.
-    pub fn neighbours(&self) -> Option<NeighboursReport> {
-        self.simulation.neighbours()
-    }
-
-    /// Returns the name of the instruction set used by the simulation.
-    pub fn instruction_set(&self) -> String {
-        self.simulation.instruction_set()
-    }
-
-    /// Returns the energy of all simulated strands at the end of the last step.
-    pub fn energy(&self) -> Energy {
-        self.simulation.energy()
-    }
-
-    /// Returns the current contacts with colliders, and the number of points for which one was evaluated.
-    pub fn contacts(&self) -> Contacts {
-        self.simulation.contacts(self.body.obstacles())
-    }
-
-    /// Returns measurements over all simulated strands at the end of the last step.
-    pub fn measure(&self) -> Measure {
-        self.simulation.measure(self.body.obstacles())
-    }
-}
-
-fn check(scene: &Scene) -> Result<(), StageError> {
-    if scene.grooms.iter().all(|g| g.groom.strand_count() == 0) {
-        return Err(StageError::NoHair);
-    }
-    for (g, groom) in scene.grooms.iter().enumerate() {
-        let groom = &groom.groom;
-        if let Some(strand) = (0..groom.strand_count()).find(|s| groom.range(*s).len() < 3) {
-            let points = groom.range(strand).len();
-            return Err(StageError::ShortStrand { groom: g, strand, points });
-        }
-        if let Some(why) = first_imprecise(groom) {
-            return Err(StageError::TooFar { groom: g, why });
-        }
-        in_range(&format!("a point of groom {g}"), &groom.points)?;
-    }
-    scene.validate()?;
-    if let Some(body) = &scene.body {
-        in_range("a vertex of the body", &body.mesh.positions)?;
-    }
-    if let Some(clip) = &scene.clip {
-        let translations = clip.samples.iter().map(|joint| &joint.translation);
-        in_range("a translation of the clip", translations)?;
-    }
-    if let (Some(clip), Some(body)) = (&scene.clip, &scene.body)
-        && clip.joint_count != body.joints.len()
-    {
-        return Err(StageError::JointCount {
-            clip: clip.name.clone(),
-            clip_joints: clip.joint_count,
-            body_joints: body.joints.len(),
-        });
-    }
-    check_vertex_cache(scene)
-}
-
-fn check_vertex_cache(scene: &Scene) -> Result<(), StageError> {
-    let Some(cache) = &scene.vertex_cache else { return Ok(()) };
-    let Some(body) = &scene.body else {
-        return Err(StageError::VertexCache("the scene has no body"));
-    };
-    if body.skin.is_some() || scene.clip.is_some() {
-        return Err(StageError::VertexCache(
-            "the body already moves by a skeleton; remove one of the two motions",
-        ));
-    }
-    if !(cache.rate.is_finite() && cache.rate > 0.0) {
-        return Err(StageError::VertexCache("its frame rate is not above 0"));
-    }
-    if cache.frames.is_empty() {
-        return Err(StageError::VertexCache("it has no frames"));
-    }
-    let expected = body.mesh.positions.len();
-    if let Some(frame) = cache.frames.iter().position(|frame| frame.len() != expected) {
-        return Err(StageError::VertexCount { frame, vertices: cache.frames[frame].len(), expected });
-    }
-    in_range("a vertex of the vertex cache", cache.frames.iter().flatten())
-}
-
-/// Rejects coordinates that are not finite or beyond [`MAX_COORDINATE`].
-fn in_range<'a>(what: &str, coordinates: impl IntoIterator<Item = &'a Vec3>) -> Result<(), StageError> {
-    let inside = |p: &Vec3| p.abs().cmple(Vec3::splat(MAX_COORDINATE)).all();
-    match coordinates.into_iter().all(inside) {
-        true => Ok(()),
-        false => Err(StageError::OutOfRange { what: what.into() }),
     }
 }

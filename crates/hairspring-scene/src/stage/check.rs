@@ -1,0 +1,156 @@
+//! What a scene must fulfill to be played, and the errors of one that does not.
+
+use crate::{Scene, SceneError};
+use glam::Vec3;
+use hairspring::groom::{Imprecise, MAX_COORDINATE, first_imprecise};
+
+/// Errors of a scene that cannot be played.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StageError {
+    /// The scene has no strands at all.
+    #[error("the scene has no hair: add a groom with at least one strand")]
+    NoHair,
+    /// A strand cannot be simulated.
+    #[error(
+        "strand {strand} of groom {groom} has {points} points, and 3 are needed: run `groom::sanitize` first"
+    )]
+    ShortStrand {
+        /// Index of the groom in the scene.
+        groom: usize,
+        /// Index of the strand.
+        strand: usize,
+        /// Number of points that it has.
+        points: usize,
+    },
+    /// The clip does not belong to the body.
+    #[error(
+        "the clip '{clip}' moves {clip_joints} joints, and the body has {body_joints}: retarget it to the body"
+    )]
+    JointCount {
+        /// Name of the clip.
+        clip: String,
+        /// Number of joints in the clip.
+        clip_joints: usize,
+        /// Joints of the body.
+        body_joints: usize,
+    },
+    /// A frame of the vertex cache has another number of vertices than the body.
+    #[error(
+        "frame {frame} of the vertex cache has {vertices} vertices, and the body has {expected}: export the motion without \
+         changes of topology"
+    )]
+    VertexCount {
+        /// Index of the frame.
+        frame: usize,
+        /// Number of its vertices.
+        vertices: usize,
+        /// Number of the body's vertices.
+        expected: usize,
+    },
+    /// The vertex cache cannot move the body.
+    #[error("the vertex cache cannot be used: {0}")]
+    VertexCache(&'static str),
+    /// The settings have another number of grooms than the stage.
+    #[error(
+        "the settings have {settings} grooms, but the stage has {grooms}: create a new stage for other grooms"
+    )]
+    GroomCount {
+        /// Number of grooms in the settings.
+        settings: usize,
+        /// Number of grooms on the stage.
+        grooms: usize,
+    },
+    /// A setting is out of range.
+    #[error(transparent)]
+    Settings(#[from] SceneError),
+    /// A strand is too far from the origin for single precision.
+    #[error("groom {groom}: {why}")]
+    TooFar {
+        /// Index of the groom in the scene.
+        groom: usize,
+        /// The strand and its distance.
+        why: Imprecise,
+    },
+    /// A coordinate or length is not finite or too large.
+    #[error("{what} is not finite or exceeds {MAX_COORDINATE} m, the largest length that is simulated")]
+    OutOfRange {
+        /// Description of the item.
+        what: String,
+    },
+    /// An item names a joint that does not exist.
+    #[error("{what} follows the joint '{joint}', and the body has none of that name")]
+    NoSuchJoint {
+        /// Description of the item that names the joint.
+        what: &'static str,
+        /// Name of the joint.
+        joint: String,
+    },
+}
+
+/// Checks a scene before it is played.
+pub(super) fn check(scene: &Scene) -> Result<(), StageError> {
+    if scene.grooms.iter().all(|g| g.groom.strand_count() == 0) {
+        return Err(StageError::NoHair);
+    }
+    for (g, groom) in scene.grooms.iter().enumerate() {
+        let groom = &groom.groom;
+        if let Some(strand) = (0..groom.strand_count()).find(|s| groom.range(*s).len() < 3) {
+            let points = groom.range(strand).len();
+            return Err(StageError::ShortStrand { groom: g, strand, points });
+        }
+        if let Some(why) = first_imprecise(groom) {
+            return Err(StageError::TooFar { groom: g, why });
+        }
+        in_range(&format!("a point of groom {g}"), &groom.points)?;
+    }
+    scene.validate()?;
+    if let Some(body) = &scene.body {
+        in_range("a vertex of the body", &body.mesh.positions)?;
+    }
+    if let Some(clip) = &scene.clip {
+        let translations = clip.samples.iter().map(|joint| &joint.translation);
+        in_range("a translation of the clip", translations)?;
+    }
+    if let (Some(clip), Some(body)) = (&scene.clip, &scene.body)
+        && clip.joint_count != body.joints.len()
+    {
+        return Err(StageError::JointCount {
+            clip: clip.name.clone(),
+            clip_joints: clip.joint_count,
+            body_joints: body.joints.len(),
+        });
+    }
+    check_vertex_cache(scene)
+}
+
+fn check_vertex_cache(scene: &Scene) -> Result<(), StageError> {
+    let Some(cache) = &scene.vertex_cache else { return Ok(()) };
+    let Some(body) = &scene.body else {
+        return Err(StageError::VertexCache("the scene has no body"));
+    };
+    if body.skin.is_some() || scene.clip.is_some() {
+        return Err(StageError::VertexCache(
+            "the body already moves by a skeleton; remove one of the two motions",
+        ));
+    }
+    if !(cache.rate.is_finite() && cache.rate > 0.0) {
+        return Err(StageError::VertexCache("its frame rate is not above 0"));
+    }
+    if cache.frames.is_empty() {
+        return Err(StageError::VertexCache("it has no frames"));
+    }
+    let expected = body.mesh.positions.len();
+    if let Some(frame) = cache.frames.iter().position(|frame| frame.len() != expected) {
+        return Err(StageError::VertexCount { frame, vertices: cache.frames[frame].len(), expected });
+    }
+    in_range("a vertex of the vertex cache", cache.frames.iter().flatten())
+}
+
+/// Rejects coordinates that are not finite or beyond [`MAX_COORDINATE`].
+fn in_range<'a>(what: &str, coordinates: impl IntoIterator<Item = &'a Vec3>) -> Result<(), StageError> {
+    let inside = |p: &Vec3| p.abs().cmple(Vec3::splat(MAX_COORDINATE)).all();
+    match coordinates.into_iter().all(inside) {
+        true => Ok(()),
+        false => Err(StageError::OutOfRange { what: what.into() }),
+    }
+}
