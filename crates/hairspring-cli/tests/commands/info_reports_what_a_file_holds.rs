@@ -75,6 +75,26 @@ fn scenes_and_bodies() {
 }
 
 #[test]
+fn curves_are_a_groom() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("lines.obj", "v 0 0 0\nv 0 0.1 0\nv 0 0.2 0\nl 1 2 3\n");
+    write(
+        "edges.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+         element edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n0 0 0\n0 0.1 0\n0 0.2 0\n0 1\n1 2\n",
+    );
+    for name in ["lines.obj", "edges.ply"] {
+        let found = json(&succeed(folder.path(), &["info", name, "--json"]));
+        assert_eq!(
+            (found["strands"].as_u64(), found["points"].as_u64()),
+            (Some(1), Some(3)),
+            "{name}: {found}"
+        );
+    }
+}
+
+#[test]
 fn places_of_joints_and_parts_and_the_distance_of_roots() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
