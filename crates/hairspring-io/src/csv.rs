@@ -170,8 +170,15 @@ mod tests {
         // The cells of later points may be anything, also empty.
         let read = read(table.as_bytes()).unwrap();
         let groom = &read.groom;
-        assert_eq!((groom.strand_count(), groom.groups.as_slice()), (2, &[0, 1][..]), "the last one has density 0");
-        assert_eq!((groom.group_names.as_slice(), read.notes.len()), (&["top".to_owned(), "side".into()][..], 0));
+        assert_eq!(
+            (groom.strand_count(), groom.groups.as_slice()),
+            (2, &[0, 1][..]),
+            "the last one has density 0"
+        );
+        assert_eq!(
+            (groom.group_names.as_slice(), read.notes.len()),
+            (&["top".to_owned(), "side".into()][..], 0)
+        );
         assert_eq!([0, 1].map(|s| (groom.scale(s).bend, groom.scale(s).friction)), [(2.0, 0.5), (3.0, 1.0)]);
         assert_eq!(groom.root_uvs, [glam::Vec2::new(0.25, 0.75), glam::Vec2::splat(0.5)]);
         assert_eq!(groom.guides.iter().map(|g| g.guides[0]).collect::<Vec<_>>(), [0, 0]);
@@ -185,6 +192,8 @@ mod tests {
         assert!(error("strand,x,y,z\n0,1,2\n").contains("3 columns"));
         assert!(error("strand,x,y,z\n0,1,2,a\n").contains("column 4"));
         assert!(error("").contains("empty"));
-        assert!(error("strand,x,y,z,drag\n0,1,2,3,-1\n").contains("line 2: `drag` is -1; it must be 0 or more"));
+        assert!(
+            error("strand,x,y,z,drag\n0,1,2,3,-1\n").contains("line 2: `drag` is -1; it must be 0 or more")
+        );
     }
 }

@@ -32,7 +32,7 @@ pub(super) struct Asked<'a> {
 }
 
 /// The radius that a material sets [m], and its profile.
-type Radius = Option<(f32, Vec<f32>)>;
+type Radius = (Option<f32>, Vec<f32>);
 
 /// Returns the geometry that `file`, parsed from `text`, describes.
 pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<Asked<'a>, Problem> {
@@ -65,12 +65,11 @@ pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<
 
 /// The radii that these materials set. A group past the end uses the last.
 fn radii_of(materials: &[Material]) -> Vec<Radius> {
-    let mut radii: Vec<_> =
-        materials.iter().map(|m| m.radius.map(|radius| (radius, m.radius_profile.clone()))).collect();
+    let mut radii: Vec<_> = materials.iter().map(|m| (m.radius, m.radius_profile.clone())).collect();
     while radii.len() > 1 && radii[radii.len() - 2] == radii[radii.len() - 1] {
         radii.pop();
     }
-    if radii == [None] { Vec::new() } else { radii }
+    if radii == [(None, Material::default().radius_profile)] { Vec::new() } else { radii }
 }
 
 impl Reader<'_> {

@@ -289,6 +289,6 @@ fn missing_and_broken_files_differ_in_kind() {
     assert_eq!(kind("broken.data"), ErrorKind::Malformed);
     // An OBJ may hold strands, but this one has only faces.
     assert_eq!(kind("head.obj"), ErrorKind::Malformed);
-    assert_eq!(kind("head.glb"), ErrorKind::Unsupported);
+    assert_eq!(kind("nod.bvh"), ErrorKind::Unsupported);
     assert_eq!(read_scene(&folder.path().join("no.toml")).unwrap_err().kind(), ErrorKind::NotFound);
 }

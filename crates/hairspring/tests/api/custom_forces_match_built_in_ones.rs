@@ -7,7 +7,7 @@ use hairspring::{
     air::Air,
     forces::{ForceField, StrandView},
     groom::Groom,
-    material::{GlobalShape, Material},
+    material::{GlobalShape, Material, profile_at},
     settings::{Solver, Wind},
     simulation::{Simulation, StepInput},
 };
@@ -26,10 +26,10 @@ impl ForceField for Pull {
         let [start, end] = strand.roots();
         let way = end.translation - start.translation;
         let rate = 1.0 / strand.dt();
-        let last = (authored.len() - 1) as f32;
+        let last = (authored.len() - 1) as f64;
         for (i, p) in authored.iter().enumerate().skip(2) {
-            let omega =
-                TAU * self.shape.pull * 1.0 * (1.0 + (self.shape.profile[1] - 1.0) * (i as f32 / last));
+            let curve = profile_at(&self.shape.profile, i as f64 / last) as f32;
+            let omega = TAU * self.shape.pull * 1.0 * curve;
             let [from, to] = [start, end].map(|root| root.rotation * (*p - authored[0]));
             strand.add_position_spring(i, [from, to], omega * omega);
             strand.add_velocity_drag(i, (way + (to - from)) * rate, 2.0 * self.shape.damping * omega);
