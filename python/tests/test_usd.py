@@ -136,7 +136,7 @@ def test_the_physics_material_is_written_and_read(tmp_path, program):
         np.testing.assert_allclose(value(name), number, rtol=1e-5, err_msg=name)
     # The file's curves have these constants again, and what the file cannot give is said.
     groom = hs.Groom.read(tmp_path / "hair.usda")
-    np.testing.assert_allclose(groom.factors["stiffness"], 2.5, rtol=1e-4)
+    np.testing.assert_allclose(groom.factors["stiffness"][:60], 2.5, rtol=1e-4)
     text = " ".join(groom.notes)
     assert "2.5 times the stiffness of a human hair" in text and "density = 1200, friction = 0.4" in text
 

@@ -49,9 +49,9 @@ def write(curves: UsdGeom.BasisCurves, path: Sdf.Path, material: dict, radius: f
     UsdShade.MaterialBindingAPI.Apply(curves.GetPrim()).Bind(defined, materialPurpose="physics")
 
 
-def read(prim: Usd.Prim, notes: list[str]) -> tuple[float | None, float | None]:
+def read(prim: Usd.Prim, widths: bool, notes: list[str]) -> tuple[float | None, float | None]:
     """The radius [m] and the factor of a human hair's stiffness that the physics material of curves gives; None for what it does
-    not give. Notes say what is not used."""
+    not give. With `widths`, the curves have their own radii. Notes say what is used and what is not."""
     bound, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")
     found = bound.GetPrim() if bound else None
     schemas = found.GetMetadata("apiSchemas") if found else None
@@ -71,11 +71,11 @@ def read(prim: Usd.Prim, notes: list[str]) -> tuple[float | None, float | None]:
     if structural and radius:
         young = structural * unit**3 / (0.25 * math.pi * radius**4)
     factor = young / HAIR["young"] if young else None
-    used = [
-        text
-        for given, text in ((radius, f"a radius of {1e6 * (radius or 0):.3g} µm"), (factor, f"{factor or 0:.3g} times the stiffness of a human hair"))
-        if given
-    ]
+    used = []
+    if radius and not widths:
+        used.append(f"a radius of {1e6 * radius:.3g} µm")
+    if factor and abs(factor - 1) > 1e-3:
+        used.append(f"{factor:.3g} times the stiffness of a human hair, by which the scene's material is multiplied")
     density = value("density")
     unused = []
     if density and abs(density / unit**3 / HAIR["density"] - 1) > 0.01:
@@ -85,7 +85,7 @@ def read(prim: Usd.Prim, notes: list[str]) -> tuple[float | None, float | None]:
         unused.append(f"friction = {friction:.3g}")
     said = []
     if used:
-        said.append(f"the physics material {found.GetPath()} gives {' and '.join(used)}; the scene's material multiplies the stiffness")
+        said.append(f"the physics material {found.GetPath()} gives {' and '.join(used)}")
     if unused:
         said.append(f"set {', '.join(unused)} of the physics material {found.GetPath()} in the scene's material; it is not used")
     notes.extend(note for note in said if note not in notes)

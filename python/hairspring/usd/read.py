@@ -118,7 +118,7 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
         closest, _ = primvar(prim, "groom_closest_guides")
         weights, _ = primvar(prim, "groom_guide_weights")
         factors = {name: primvar(prim, name) for name in FACTORS}
-        material_radius, stiffer = material.read(prim, notes)
+        material_radius, stiffer = material.read(prim, widths.size > 0, notes)
         each = np.array([[varying_count(int(n), kind, basis, wrap) for n in counts], counts])
         first = 0
         before = len(strands)
