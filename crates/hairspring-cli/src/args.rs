@@ -30,6 +30,7 @@ Exit codes:
   5    a file or standard output could not be written
   6    the scene cannot be simulated
   7    the machine lacks what the command needs: a desktop, a GPU
+  8    out of memory
   70   internal error
   130  interrupted (Ctrl-C, SIGTERM): no partial file is left. A run that writes frames completes the
        current one first; a second interrupt ends it at once";

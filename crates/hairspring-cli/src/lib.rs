@@ -16,6 +16,7 @@ mod interrupt;
 mod live;
 mod manifest;
 mod moment;
+pub mod out_of_memory;
 mod output;
 mod picture;
 mod play;

@@ -11,6 +11,7 @@ mod compare_tells_integrators_apart;
 mod grooms_convert_exactly;
 mod info_reports_what_a_file_holds;
 mod interrupts_leave_nothing_partial;
+mod out_of_memory_is_a_sentence;
 mod pictures_and_clips_are_written;
 mod pictures_hold_alpha_depth_and_motion;
 mod resume_checks_inputs_and_frames;
