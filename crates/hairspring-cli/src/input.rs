@@ -25,6 +25,22 @@ pub struct Units {
     pub reverse: bool,
 }
 
+impl Units {
+    /// Refuses them for a scene, which says itself how its files are read.
+    pub fn refuse_for_scene(self) -> Result<(), Fault> {
+        if self.scale.is_some() || self.up.is_some() {
+            let text =
+                "--scale and --up apply to a groom file; a scene sets them for each file that it names";
+            return Err(Fault::Usage(text.into()));
+        }
+        if self.reverse {
+            let text = "--reverse applies to a groom file; in a scene, set `reverse = true` in its [[groom]]";
+            return Err(Fault::Usage(text.into()));
+        }
+        Ok(())
+    }
+}
+
 /// The axis that points up.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Up {
@@ -91,14 +107,7 @@ impl Input {
     pub fn scene(&self, console: Console) -> Result<Scene, Fault> {
         let path = &self.path;
         let mut scene = if Format::of(path) == Some(Format::Scene) {
-            if self.units.scale.is_some() || self.units.up.is_some() {
-                return Err(Fault::Usage(UNITS_OF_A_SCENE.into()));
-            }
-            if self.units.reverse {
-                let text =
-                    "--reverse applies to a groom file; in a scene, set `reverse = true` in its [[groom]]";
-                return Err(Fault::Usage(text.into()));
-            }
+            self.units.refuse_for_scene()?;
             let loaded = read_scene(path).map_err(|e| Fault::reading(e, path))?;
             tell(&loaded.notes, &loaded.repairs, console);
             loaded.value
@@ -141,10 +150,6 @@ impl Input {
         }
     }
 }
-
-/// Why units cannot be set for a scene.
-pub const UNITS_OF_A_SCENE: &str =
-    "--scale and --up apply to a groom file; a scene sets them for each file that it names";
 
 /// The error for a file that is neither a scene nor a groom.
 pub fn unknown_extension(path: &Path) -> Fault {

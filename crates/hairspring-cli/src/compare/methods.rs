@@ -174,8 +174,8 @@ fn scene(options: &Options, console: Console) -> Result<Scene, Fault> {
     if let Some(path) = &options.a {
         return Input { path: path.clone(), units, guides, substeps }.scene(console);
     }
-    if units.scale.is_some() || units.up.is_some() {
-        return Err(Fault::Usage("--scale and --up apply to a groom file; none is given".into()));
+    if units.scale.is_some() || units.up.is_some() || units.reverse {
+        return Err(Fault::Usage("--scale, --up and --reverse apply to a groom file; none is given".into()));
     }
     let mut scene = builtin::scene(&BuiltinOptions {
         strands: HEAD.0,

@@ -171,9 +171,7 @@ fn side(path: &Path, flag: &str, sets: &[String], options: &Options) -> Result<S
     let reading = |e| Fault::reading(e, path);
     let mut text = match Format::of(path) {
         Some(Format::Scene) => {
-            if options.units.scale.is_some() || options.units.up.is_some() {
-                return Err(Fault::Usage(input::UNITS_OF_A_SCENE.into()));
-            }
+            options.units.refuse_for_scene()?;
             scene_text(path).map_err(reading)?
         }
         Some(format) if Format::GROOMS.contains(&format) => groom_alone(path, options)?,
@@ -218,6 +216,9 @@ fn groom_alone(path: &Path, options: &Options) -> Result<String, Fault> {
     }
     if let Some(up) = options.units.up {
         text = set(&text, "groom[0].up", if up == input::Up::Y { "y" } else { "z" })?;
+    }
+    if options.units.reverse {
+        text = set(&text, "groom[0].reverse", "true")?;
     }
     Ok(text)
 }

@@ -92,6 +92,16 @@ fn two_settings_of_one_scene() {
 }
 
 #[test]
+fn reversed_strands_are_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    write_groom(folder.path(), 20);
+    let turned = ["groom.hair", "--set-b", "groom[0].reverse=true", "--seconds", "0.1"];
+    let apart = |arguments: &[&str]| compare(folder.path(), arguments)["distance"]["max_m"].as_f64().unwrap();
+    assert!(apart(&turned) > 1e-3);
+    assert_eq!(apart(&[&turned[..], &["--reverse"]].concat()), 0.0);
+}
+
+#[test]
 fn two_scenes_with_other_files_and_strands() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
@@ -181,6 +191,8 @@ fn wrong_arguments_are_refused_and_write_nothing() {
         (&["compare", "scene.toml", "groom.hair", "--seconds", "1e9"], 2, "--seconds"),
         (&["compare", "scene.toml", "groom.hair", "--integrators", "verlet"], 2, "--methods"),
         (&["compare", "scene.toml", "groom.hair", "--substeps", "4"], 2, "--methods"),
+        (&["compare", "scene.toml", "groom.hair", "--reverse"], 2, "--reverse applies to a groom file"),
+        (&["compare", "--methods", "--reverse"], 2, "none is given"),
     ] {
         let stderr = fail(f, arguments, code);
         let errors: Vec<&str> = stderr.lines().filter(|l| !l.starts_with("note: ")).collect();
