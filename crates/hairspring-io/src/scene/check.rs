@@ -4,6 +4,7 @@ use super::{
     air::{self, lines},
     file::{BodyFile, BuiltinFile, ClipFile, KeyFile, PropFile, SceneFile},
     groom_file::{GroomFile, Placement},
+    map_file::Channel,
     props,
     sentence::{line_at, line_of_key, line_of_setting},
 };
@@ -203,6 +204,11 @@ fn maps(text: &str, groom: &GroomFile) -> Result<(), Problem> {
         }
         if name == "comb" && groom.grow.is_none() {
             return wrong("is the direction of hair that grows; a `file` has its own");
+        }
+        if name == "comb" && (file.low != 0.0 || file.high < 0.0 || file.channel != Channel::default()) {
+            return wrong(
+                "uses red and green, and of the range only `high`, 0 or more; omit `channel` and `low`",
+            );
         }
     }
     Ok(())

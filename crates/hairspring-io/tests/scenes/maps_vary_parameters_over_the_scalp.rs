@@ -190,6 +190,12 @@ fn maps_that_cannot_work_are_refused() {
         let error = refused(&folder, &scene(maps));
         assert!(words.iter().all(|word| error.contains(word)), "{maps}: {error}");
     }
+    let grown = "[body]\nfile = \"square.obj\"\n[[groom]]\ngrow = { strands = 10 }\n[groom.maps]\n";
+    for setting in ["low = 0.5", "high = -1", "channel = \"red\""] {
+        let text = format!("{grown}comb = {{ texture = \"ramp.png\", {setting} }}\n");
+        let error = refused(&folder, &text);
+        assert!(error.contains("line 6") && error.contains("omit `channel` and `low`"), "{setting}: {error}");
+    }
     // Bodies without what the map needs.
     fs::write(folder.path().join("square.obj"), "v -1 0 1\nv 1 0 1\nv 1 0 -1\nf 1 2 3\n").unwrap();
     let error = refused(&folder, &scene("bend = { vertex_colors = true }"));
