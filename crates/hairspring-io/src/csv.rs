@@ -186,6 +186,23 @@ mod tests {
     }
 
     #[test]
+    fn guides_have_finite_weights_whatever_the_points_are() {
+        for x in ["nan", "inf", "-3e38", "1"] {
+            let strand = |name: &str, x: &str, guide: u8| {
+                (0..3).map(|k| format!("{name},{x},{k},0,{guide}\n")).collect::<String>()
+            };
+            let table = format!(
+                "strand,x,y,z,guide\n{}{}{}",
+                strand("a", x, 1),
+                strand("b", x, 0),
+                strand("c", "2", 0)
+            );
+            let groom = parse(table.as_bytes()).unwrap();
+            assert!(groom.guides.iter().all(|g| (g.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6), "{x}");
+        }
+    }
+
+    #[test]
     fn what_is_wrong_is_named_with_its_line() {
         let error = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
         assert!(error("strand,x,y\n").contains("no column `z`"));

@@ -5,7 +5,7 @@ use crate::strands::Read;
 use glam::Vec2;
 use hairspring::{
     follow::assign_guides,
-    groom::{StrandScale, thin},
+    groom::{GuideWeights, StrandScale, thin},
 };
 
 /// Names of the attributes that are numbers, in the order of [`StrandAttributes::numbers`].
@@ -69,6 +69,10 @@ impl StrandAttributes {
             (0..strands as u32).filter(|s| guide.get(*s as usize).is_some_and(|flag| *flag > 0.0)).collect();
         if !guides.is_empty() && guides.len() < strands {
             groom.guides = assign_guides(groom, &guides);
+            // A strand whose points are not finite or too far apart, which are repaired later, follows any guide.
+            for own in groom.guides.iter_mut().filter(|own| !own.weights.iter().all(|w| w.is_finite())) {
+                *own = GuideWeights { guides: [guides[0]; 3], weights: [1.0, 0.0, 0.0] };
+            }
         }
         if !density.is_empty() {
             // The radii are not in the groom yet.
