@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 use hairspring::groom::Groom;
 use hairspring_io::{
-    Problem, bvh, gltf, hair, makehuman, obj, ply, scene, tfx, tfxbone, tfxmesh, usc, write_groom,
+    Problem, bvh, csv, gltf, hair, makehuman, obj, pc2, ply, scene, tfx, tfxbone, tfxmesh, usc, write_groom,
 };
 
 /// A format's name, a small file in it, and its reader.
@@ -28,6 +28,22 @@ pub fn written(groom: &Groom, extension: &str) -> Vec<u8> {
     std::fs::read(path).unwrap()
 }
 
+/// A table of two strands with every attribute.
+const TABLE: &str = "strand,x,y,z,radius,r,g,b,group,guide,u,v,stiffness,damping,drag,friction,charge,density\n\
+    a,0,0,0,4e-5,1,0.5,0,top,1,0.1,0.9,2,1,1,0.5,1,1\na,0,0.1,0,3e-5,1,0.5,0,top,1,0.1,0.9,2,1,1,0.5,1,1\n\
+    b,1,0,0,4e-5,0,0.5,1,side,0,0.2,0.8,1,1,3,1,1,1\nb,1,0.1,0,3e-5,0,0.5,1,side,0,0.2,0.8,1,1,3,1,1,1\n";
+
+/// Two samples of three points.
+fn point_cache() -> Vec<u8> {
+    let mut bytes = b"POINTCACHE2\0".to_vec();
+    bytes.extend(1i32.to_le_bytes());
+    bytes.extend(3i32.to_le_bytes());
+    [0f32, 1.0].iter().for_each(|x| bytes.extend(x.to_le_bytes()));
+    bytes.extend(2i32.to_le_bytes());
+    (0..18).for_each(|k| bytes.extend((0.1 * k as f32).to_le_bytes()));
+    bytes
+}
+
 /// One sample of each format.
 pub fn all() -> Vec<Sample> {
     let mut uneven = groom(4);
@@ -48,6 +64,8 @@ pub fn all() -> Vec<Sample> {
         ("ply-big", ply_edges("binary_big_endian"), |b| ply::parse(b).map(drop)),
         ("ply-lists", PLY_LISTS.into(), |b| ply::parse(b).map(drop)),
         ("ply-ids", PLY_IDS.into(), |b| ply::parse(b).map(drop)),
+        ("csv", TABLE.into(), |b| csv::parse(b).map(drop)),
+        ("pc2", point_cache(), |b| pc2::parse(b).map(drop)),
         ("bvh", motion().into_bytes(), |b| bvh::parse(b).map(drop)),
         ("glb", glb(), |b| gltf::parse(b, &|_| None).map(drop)),
         ("glb-morph", glb_morph(), morphed),
