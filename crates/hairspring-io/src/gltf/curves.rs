@@ -219,7 +219,7 @@ impl Build<'_> {
         Ok(read)
     }
 
-    /// Returns the groom, and notes about what is left out.
+    /// Returns the finished groom. Adds a note for each kind of data that was ignored.
     fn finish(self, mut notes: Vec<String>) -> Result<Read, Problem> {
         let Self { mut groom, radii, found, groups, .. } = self;
         if found.lines == 0 {

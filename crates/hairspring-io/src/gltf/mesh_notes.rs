@@ -1,6 +1,6 @@
-//! Notes about what the mesh of a glTF file leaves out.
+//! Notes about data of a glTF mesh that is ignored or changed.
 
-/// What is not read as the file has it.
+/// Counts of objects that are ignored or changed while reading.
 #[derive(Default)]
 pub(super) struct LeftOut {
     /// Nodes that draw copies of their mesh.

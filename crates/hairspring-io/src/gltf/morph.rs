@@ -188,7 +188,7 @@ impl Morphs {
         added.for_each(|(_, by)| *by = turn * (*by * scale));
     }
 
-    /// Keeps only the vertices for which `kept` is true, which are numbered anew.
+    /// Removes the vertices for which `kept` is false, and renumbers the others.
     pub(crate) fn keep(&mut self, kept: &[bool]) {
         let mut next = 0;
         let numbers = kept.iter().map(|kept| {

@@ -186,7 +186,7 @@ fn of_ids(vertices: &[Vertex]) -> Indices {
     indices
 }
 
-/// Returns the groom of strands of vertices, and notes about what is left out.
+/// Builds the groom from the vertices and the indices of each strand. Adds a note for each kind of data that is ignored.
 fn strands_of(header: &Header, vertices: &[Vertex], indices: Indices, source: Source) -> Read {
     let has = |name: &str| is_number(&header.elements["vertex"], name);
     let points = || indices.order.iter().map(|v| &vertices[*v as usize]);

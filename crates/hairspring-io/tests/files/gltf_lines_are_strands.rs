@@ -1,5 +1,5 @@
 //! Promise: the lines of a glTF file are strands where a groom is read: segments, strips and loops, placed by their
-//! nodes, with colors, radii and groups. A file without lines is an error that says what is expected.
+//! nodes, with colors, radii and groups. A file without lines is refused, and the error states that lines are expected.
 
 use crate::{
     gltf_file::GltfFile,

@@ -1,5 +1,5 @@
-//! Promise: the curves of a PLY file are strands, in text and in both byte orders, whether edges, lists or numbers of
-//! the points name them. What is no curve is an error of one sentence.
+//! Promise: the curves of a PLY file are strands, in text and in both byte orders, defined by edges, by lists of
+//! vertices or by an id for each vertex. A file without curves is refused with a one-sentence error.
 
 use crate::samples::{PLY_IDS, PLY_LISTS, ply_edges};
 use glam::Vec3;

@@ -103,7 +103,7 @@ fn each_parameter_follows_its_map() {
     assert_eq!(groom("length = { values = \"three.txt\", low = -0.25, high = 0.75 }").strand_count(), 2);
 }
 
-/// A radius of the material is multiplied too, in what is drawn and in what is simulated; a profile as well.
+/// A radius map multiplies the material's radius and its profile, both for drawing and for the simulation.
 #[test]
 fn a_radius_by_a_map_and_a_profile_is_drawn_as_it_is_simulated() {
     let folder = made();

@@ -158,9 +158,9 @@ pub(crate) struct LineCharge<'a> {
 }
 
 impl LineCharge<'_> {
-    /// Charge per length at point `i` of `count` [C/m].
-    pub fn at(&self, i: usize, count: usize) -> f32 {
-        self.per_length * profile_at(self.profile, i as f64 / (count - 1) as f64) as f32
+    /// Charge per length at the fraction `along` of the strand's length [C/m].
+    pub fn at(&self, along: f32) -> f32 {
+        self.per_length * profile_at(self.profile, f64::from(along)) as f32
     }
 }
 
@@ -174,12 +174,15 @@ pub(crate) struct Charges<'a> {
 impl Charges<'_> {
     /// Applies the forces to a strand.
     pub fn add(&self, charge: &LineCharge, strand: &mut StrandView) {
-        let count = strand.point_count();
+        let whole: f32 = (0..strand.point_count()).map(|i| strand.length(i)).sum();
+        let mut before = strand.length(0) + strand.length(1);
         let [start, end] = strand.roots().map(|root| root.translation);
         let explicit = 1.0 / (strand.frame.dt * strand.frame.dt);
         for (i, (x, _)) in strand.points().enumerate().skip(2) {
             // Acceleration in a field of 1 V/m.
-            let per_field = charge.at(i, count) * strand.length(i) / strand.mass(i);
+            let length = strand.length(i);
+            let per_field = charge.at((before + 0.5 * length) / whole) * length / strand.mass(i);
+            before += length;
             for ball in self.balls {
                 let d = start + x - ball.centers[0];
                 let r = d.length().max(ball.radius);

@@ -2,7 +2,7 @@
 //! the root.
 //!
 //! ```text
-//! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf c(s),   c the profile, linear in the index between its values
+//! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf c(s),   c the profile at the arc length s
 //! ```
 //!
 //! This is the global shape of *Augmented Mass-Spring* (AMS 2025), also found in game engines. It is not
@@ -18,9 +18,11 @@ pub(crate) fn apply(shape: &GlobalShape, scale: f32, authored: &[Vec3], strand: 
     let [start, end] = strand.roots();
     let way = end.translation - start.translation;
     let inv_dt = 1.0 / strand.frame.dt;
-    let last = (authored.len() - 1) as f64;
+    let whole: f32 = authored.windows(2).map(|w| w[0].distance(w[1])).sum();
+    let mut along = authored[0].distance(authored[1]);
     for (i, p) in authored.iter().enumerate().skip(2) {
-        let curve = profile_at(&shape.profile, i as f64 / last) as f32;
+        along += p.distance(authored[i - 1]);
+        let curve = profile_at(&shape.profile, f64::from(along / whole)) as f32;
         let omega = std::f32::consts::TAU * shape.pull * scale * curve;
         let [from, to] = [start, end].map(|root| root.rotation * (*p - authored[0]));
         strand.add_position_spring(i, [from, to], omega * omega);

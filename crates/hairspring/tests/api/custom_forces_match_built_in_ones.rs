@@ -26,9 +26,11 @@ impl ForceField for Pull {
         let [start, end] = strand.roots();
         let way = end.translation - start.translation;
         let rate = 1.0 / strand.dt();
-        let last = (authored.len() - 1) as f64;
+        let whole: f32 = authored.windows(2).map(|w| w[0].distance(w[1])).sum();
+        let mut along = authored[0].distance(authored[1]);
         for (i, p) in authored.iter().enumerate().skip(2) {
-            let curve = profile_at(&self.shape.profile, i as f64 / last) as f32;
+            along += p.distance(authored[i - 1]);
+            let curve = profile_at(&self.shape.profile, f64::from(along / whole)) as f32;
             let omega = TAU * self.shape.pull * 1.0 * curve;
             let [from, to] = [start, end].map(|root| root.rotation * (*p - authored[0]));
             strand.add_position_spring(i, [from, to], omega * omega);

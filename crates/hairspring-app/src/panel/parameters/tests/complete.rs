@@ -60,7 +60,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("groom.reverse", "how a file is read"),
     ("groom.colors", "how a file is read"),
     ("groom.bones", "a file"),
-    ("groom.maps", "files, and parameters of what is in them"),
+    ("groom.maps", "maps are files; the panel has no file dialog for them"),
     ("groom.grow.parts", "names of parts of the body's file"),
     ("groom.grow.joint", "where hair grows is said with its parts"),
     ("groom.grow.inside", "where hair grows is said with its parts"),
