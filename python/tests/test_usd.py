@@ -141,6 +141,39 @@ def test_the_physics_material_is_written_and_read(tmp_path, program):
     assert "2.5 times the stiffness of a human hair" in text and "density = 1200, friction = 0.4" in text
 
 
+def test_every_group_has_its_own_physics_material(tmp_path, program):
+    points, offsets = tuft()
+    stage = new_stage(tmp_path / "two.usda")
+    define_curves(stage, "/soft", points, offsets)
+    define_curves(stage, "/stiff", points + [0.1, 0, 0], offsets)
+    stage.Save()
+    (tmp_path / "a.toml").write_text(
+        '[[groom]]\nfile = "two.usda"\nmaterial = ["soft", "stiff"]\nguides = "all"\n'
+        "[material.soft]\nbend = 0.5\n[material.stiff]\nbend = 3.0\n"
+    )
+    stiffness = lambda bound: bound.GetPrim().GetAttribute("physics:bendStiffness").Get() / 3.9e9
+    for over in ([], ["--over", tmp_path / "two.usda"]):
+        path = tmp_path / f"sim{len(over)}.usda"
+        code, _, error = program("bake", tmp_path / "a.toml", "-o", path, "--frames", "1-2", *over)
+        assert code == 0, error
+        baked = Usd.Stage.Open(str(path))
+        if over:
+            parts = [baked.GetPrimAtPath(name) for name in ("/soft", "/stiff")]
+        else:
+            prim = next(p for p in baked.Traverse() if p.IsA(UsdGeom.BasisCurves))
+            (subset,) = UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
+            assert subset.GetElementTypeAttr().Get() == "segment"
+            pairs = np.array(subset.GetIndicesAttr().Get()).reshape(-1, 2)
+            assert [tuple(pair) for pair in pairs] == [(s, k) for s in range(12, 24) for k in range(9)]
+            parts = [prim, subset.GetPrim()]
+            assert UsdGeom.Subset.ValidateFamily(UsdGeom.Imageable(prim), "segment", "materialBind")[0]
+        found = [UsdShade.MaterialBindingAPI(part).ComputeBoundMaterial("physics")[0] for part in parts]
+        np.testing.assert_allclose([stiffness(bound) for bound in found], [0.5, 3.0], rtol=1e-5)
+        if not over:
+            notes = " ".join(hs.Groom.read(path).notes)
+            assert "has other physics materials for 1 of its parts (stiff)" in notes, notes
+
+
 def test_the_physics_material_of_a_stage_in_centimeters(tmp_path):
     points, offsets = tuft()
     stage = new_stage(tmp_path / "a.usda")

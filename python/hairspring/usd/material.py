@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from pxr import Sdf, Usd, UsdGeom, UsdPhysics, UsdShade
+from pxr import Sdf, Usd, UsdGeom, UsdPhysics, UsdShade, Vt
 
 SCHEMA = "PhysicsCurvesDeformableMaterialAPI"
 """The applied schema of the material of curves."""
@@ -19,9 +19,20 @@ HAIR = {"young": 3.9e9, "density": 1310.0}
 """Young's modulus [Pa] and density [kg/m³] of the default material, a human hair."""
 
 
-def write(curves: UsdGeom.BasisCurves, path: Sdf.Path, material: dict, radius: float) -> None:
-    """Defines a material with the constants of `material`, for hair of this radius [m], and binds it to the curves for physics."""
-    stage = curves.GetPrim().GetStage()
+def subset(curves: UsdGeom.BasisCurves, name: str, strands: np.ndarray, counts: np.ndarray) -> UsdGeom.Subset:
+    """Defines the subset of all segments of these strands, which have `counts` points, to which a material can be bound."""
+    segments = np.repeat(strands, counts - 1)
+    begins = np.repeat(np.cumsum(counts - 1) - (counts - 1), counts - 1)
+    pairs = np.column_stack([segments, np.arange(len(segments)) - begins])
+    indices = Vt.IntArray.FromNumpy(np.ascontiguousarray(pairs.ravel(), np.int32))
+    api = UsdShade.MaterialBindingAPI.Apply(curves.GetPrim())
+    return api.CreateMaterialBindSubset(name, indices, UsdGeom.Tokens.segment)
+
+
+def write(target: UsdGeom.BasisCurves | UsdGeom.Subset, path: Sdf.Path, material: dict, radius: float) -> None:
+    """Defines a material with the constants of `material`, for hair of this radius [m], and binds it to curves or to a subset of
+    their segments for physics."""
+    stage = target.GetPrim().GetStage()
     unit = UsdGeom.GetStageMetersPerUnit(stage)
     defined = UsdShade.Material.Define(stage, path)
     prim = defined.GetPrim()
@@ -46,7 +57,7 @@ def write(curves: UsdGeom.BasisCurves, path: Sdf.Path, material: dict, radius: f
     }
     for name, value in values.items():
         prim.CreateAttribute(f"physics:{name}", Sdf.ValueTypeNames.Float, False).Set(value)
-    UsdShade.MaterialBindingAPI.Apply(curves.GetPrim()).Bind(defined, materialPurpose="physics")
+    UsdShade.MaterialBindingAPI.Apply(target.GetPrim()).Bind(defined, materialPurpose="physics")
 
 
 def read(prim: Usd.Prim, widths: bool, notes: list[str]) -> tuple[float | None, float | None]:
@@ -88,5 +99,12 @@ def read(prim: Usd.Prim, widths: bool, notes: list[str]) -> tuple[float | None, 
         said.append(f"the physics material {found.GetPath()} gives {' and '.join(used)}")
     if unused:
         said.append(f"set {', '.join(unused)} of the physics material {found.GetPath()} in the scene's material; it is not used")
+    parts = UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
+    others = [p for p in parts if UsdShade.MaterialBindingAPI(p).GetDirectBinding("physics").GetMaterial()]
+    if others:
+        said.append(
+            f"{prim.GetPath()} has other physics materials for {len(others)} of its parts ({others[0].GetPrim().GetName()}); they"
+            " are not used: set a material for each group in the scene"
+        )
     notes.extend(note for note in said if note not in notes)
     return radius, factor

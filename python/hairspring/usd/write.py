@@ -123,8 +123,7 @@ class CurvesWriter:
         attribute = prim.CreateAttribute("physics:restShapePoints", Sdf.ValueTypeNames.Point3fArray, False)
         attribute.Set(Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(rest)))
         if groom.materials:
-            path = prim.GetPath().GetParentPath().AppendChild(f"{prim.GetName()}_physics")
-            material.write(curves, path, groom.materials[0], float(groom.radii[points].mean()))
+            self._bind_materials(curves, groom, own)
         api, types = UsdGeom.PrimvarsAPI(prim), Sdf.ValueTypeNames
 
         def primvar(name, kind, values, interpolation=UsdGeom.Tokens.uniform, size=-1):
@@ -147,6 +146,27 @@ class CurvesWriter:
             weights = Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(groom.guide_weights[own], np.float32))
             primvar("groom_closest_guides", types.Int3Array, closest)
             primvar("groom_guide_weights", types.Float3Array, weights)
+
+    def _bind_materials(self, curves: UsdGeom.BasisCurves, groom: MovingGroom, own: slice) -> None:
+        """Binds the physics material of the first group to the curves. Where there are several groups, each has a material
+        bind subset of its own segments."""
+        path = curves.GetPath().GetParentPath().AppendChild(f"{curves.GetPrim().GetName()}_physics")
+        groups = groom.groups[own] if groom.groups is not None else np.zeros(own.stop - own.start, int)
+        used = np.unique(groups)
+        radii = groom.radii[int(groom.offsets[own.start]) : int(groom.offsets[own.stop])]
+        of_point = np.repeat(groups, groom.counts[own])
+        taken: set[str] = set()
+        for group in used:
+            settings = groom.materials[min(int(group), len(groom.materials) - 1)]
+            radius = float(radii[of_point == group].mean())
+            if group == used[0]:
+                material.write(curves, path, settings, radius)
+            else:
+                name = groom.group_names[group] if group < len(groom.group_names) else f"group_{group}"
+                name = identifier(name.rsplit("/", 1)[-1], taken)
+                strands = np.flatnonzero(groups == group)
+                subset = material.subset(curves, name, strands, groom.counts[own][strands])
+                material.write(subset, path.ReplaceName(f"{path.name}_{name}"), settings, radius)
 
     def frame(self, frame: float, points: np.ndarray, velocities: np.ndarray) -> None:
         """Writes the points of all grooms [points, 3] [m] and their velocities [m/s] at a frame."""
