@@ -46,7 +46,7 @@ pub use external::{
 };
 pub use frame_writer::{FrameError, FrameWriter};
 pub use gltf::Character;
-pub use load::{Format, Loaded, read_body, read_bones, read_groom, read_motion};
+pub use load::{Format, Loaded, holds_only_curves, read_body, read_bones, read_groom, read_motion};
 pub use motion::Motion;
 pub use observe::observe_files;
 pub use save::{atomically, write_groom, write_strands};

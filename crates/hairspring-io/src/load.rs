@@ -119,6 +119,17 @@ pub struct Loaded<T> {
 /// Largest file that is read [bytes]: 4 GiB, about 300 million points.
 const MAX_FILE: u64 = 4 << 30;
 
+/// Returns whether a file of a format for meshes holds a groom: an `.obj` file with polylines and no face before them, or
+/// a glTF file whose primitives are all lines. A file that cannot be read holds none.
+pub fn holds_only_curves(path: &Path) -> bool {
+    let held = match Format::of(path) {
+        Some(Format::Obj) => obj::holds_polylines,
+        Some(Format::Gltf) => gltf::holds_only_lines,
+        _ => return false,
+    };
+    bytes_of(path).is_ok_and(|data| held(&data))
+}
+
 /// Reads a hairstyle from a `.hair`, `.tfx`, `.data` or `.csv` file, or from the curves of an `.obj`, `.ply`, `.gltf`
 /// or `.glb` file, and repairs it (`groom::sanitize`).
 ///

@@ -103,6 +103,17 @@ pub fn parse_groom(data: &[u8]) -> Result<Groom, Problem> {
     read_groom(data).map(Read::in_file_units)
 }
 
+/// Returns whether an `.obj` file has polylines and no face before them.
+pub(crate) fn holds_polylines(data: &[u8]) -> bool {
+    let text = as_text(data);
+    let first = statements(&text).find_map(|(_, line)| match line.split_whitespace().next() {
+        Some("f" | "fo") => Some(false),
+        Some("l") => Some(true),
+        _ => None,
+    });
+    first == Some(true)
+}
+
 /// Reads the polylines of an `.obj` file. The first point of each is its root.
 pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     let text = as_text(data);

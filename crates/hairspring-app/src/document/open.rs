@@ -2,22 +2,16 @@
 
 use super::{Document, builtin_text};
 use crate::{AppError, destination::settled};
-use hairspring_io::Format;
-use std::{
-    io::{BufRead, BufReader},
-    path::{Path, PathBuf},
-};
+use hairspring_io::{Format, holds_only_curves};
+use std::path::{Path, PathBuf};
 
 /// The kinds of file that open as a scene: title and extensions, for file dialogs.
 pub const KINDS: [(&str, &[&str]); 4] = [
     ("Scene", &["toml"]),
-    ("Groom", &["hair", "tfx", "data", "obj", "csv", "ply"]),
+    ("Groom", &["hair", "tfx", "data", "obj", "glb", "gltf", "csv", "ply"]),
     ("Body", &["glb", "gltf", "vrm", "obj", "tfxmesh"]),
     ("Motion", &["bvh"]),
 ];
-
-/// Largest start of an `.obj` file that is searched for its first face or polyline [bytes].
-const SEARCHED: u64 = 64 << 20;
 
 /// What a file is to the open scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,27 +33,12 @@ impl Role {
             | Format::Ply
             | Format::Usd
             | Format::Alembic => Self::Groom,
-            Format::Obj if holds_polylines(path) => Self::Groom,
+            Format::Obj | Format::Gltf if holds_only_curves(path) => Self::Groom,
             Format::Obj | Format::Gltf | Format::TfxMesh => Self::Body,
             Format::Bvh => Self::Motion,
             Format::TfxBone | Format::Pc2 => return None,
         })
     }
-}
-
-/// Whether an `.obj` file has polylines and no face before them: it holds a groom.
-fn holds_polylines(path: &Path) -> bool {
-    use std::io::Read;
-    let Some(file) = std::fs::File::open(path).ok().filter(|f| f.metadata().is_ok_and(|m| m.is_file()))
-    else {
-        return false;
-    };
-    let mut lines = BufReader::new(file.take(SEARCHED)).split(b'\n').map_while(Result::ok);
-    lines.find_map(|line| match line.trim_ascii_start() {
-        [b'f', b' ' | b'\t', ..] => Some(false),
-        [b'l', b' ' | b'\t', ..] => Some(true),
-        _ => None,
-    }) == Some(true)
 }
 
 /// Whether opening this file takes the place of the scene. Otherwise it replaces a part of the scene.

@@ -27,7 +27,7 @@ pub(super) fn open<'a>(
     data: &'a [u8],
     sibling: &dyn Fn(&str) -> Option<Vec<u8>>,
 ) -> Result<(Document, Buffers<'a>), Problem> {
-    let (json, mut blob) = if data.starts_with(b"glTF") { chunks(data)? } else { (data, None) };
+    let (json, mut blob) = parts(data)?;
     let document = json::parse(json)?;
     let mut stored: Vec<Cow<'a, [u8]>> = Vec::new();
     let mut files: HashMap<String, usize> = HashMap::new();
@@ -69,6 +69,16 @@ pub(super) fn open<'a>(
         of.push(slot);
     }
     Ok((document, Buffers::new(data.len(), stored, of)))
+}
+
+/// Reads the document of a `.glb` or `.gltf` file without its buffers.
+pub(super) fn document(data: &[u8]) -> Result<Document, Problem> {
+    json::parse(parts(data)?.0)
+}
+
+/// Returns the JSON of a `.glb` or `.gltf` file, and the binary chunk of a GLB.
+fn parts(data: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
+    if data.starts_with(b"glTF") { chunks(data) } else { Ok((data, None)) }
 }
 
 /// Returns the JSON and the binary chunk of a GLB.

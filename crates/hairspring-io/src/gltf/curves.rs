@@ -23,6 +23,17 @@ const LINES: u32 = 1;
 const LINE_LOOP: u32 = 2;
 const LINE_STRIP: u32 = 3;
 
+/// Whether all primitives of the file are lines, and it has some.
+pub(super) fn are_all(document: &Document) -> bool {
+    let mut primitives = document.meshes.iter().flat_map(|mesh| &mesh.primitives).peekable();
+    primitives.peek().is_some() && primitives.all(is_lines)
+}
+
+/// Whether the primitive is drawn as lines. By default, it is drawn as triangles (mode 4).
+fn is_lines(primitive: &Primitive) -> bool {
+    (LINES..=LINE_STRIP).contains(&primitive.mode.unwrap_or(4))
+}
+
 /// Reads the lines of all nodes of the scene.
 pub(super) fn read(document: &Document, buffers: &Buffers<'_>) -> Result<Read, Problem> {
     let mut notes = Vec::new();
@@ -93,7 +104,7 @@ impl Build<'_> {
         let world = if node.skin.is_some() { Affine3A::IDENTITY } else { world };
         let before = self.groom.strand_count();
         for primitive in &mesh.primitives {
-            if !(LINES..=LINE_STRIP).contains(&primitive.mode.unwrap_or(4)) {
+            if !is_lines(primitive) {
                 self.found.others += 1;
                 continue;
             }

@@ -75,6 +75,11 @@ pub(crate) fn read_groom(data: &[u8], sibling: &dyn Fn(&str) -> Option<Vec<u8>>)
     curves::read(&document, &buffers)
 }
 
+/// Returns whether all primitives of a glTF file are lines, and it has some.
+pub(crate) fn holds_only_lines(data: &[u8]) -> bool {
+    container::document(data).is_ok_and(|document| curves::are_all(&document))
+}
+
 /// Returns the transform, or `None` if it is singular or not finite.
 fn invertible(m: Affine3A) -> Option<Affine3A> {
     let determinant = m.matrix3.determinant();

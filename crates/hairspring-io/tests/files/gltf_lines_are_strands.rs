@@ -6,7 +6,7 @@ use crate::{
     samples::{glb, glb_strands},
 };
 use glam::Vec3;
-use hairspring_io::{Format, ReadOptions, gltf, read_groom, read_scene};
+use hairspring_io::{Format, ReadOptions, gltf, holds_only_curves, read_groom, read_scene};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -185,4 +185,32 @@ fn a_scene_reads_the_lines_of_a_gltf_file() {
         (groom.strand_count(), &groom.group_names[..]),
         (4, &["fringe".to_owned(), "braid".into()][..])
     );
+}
+
+#[test]
+fn a_file_of_curves_alone_is_told_from_a_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    let holds = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        holds_only_curves(&path)
+    };
+    let of = |primitives: Value| {
+        lines(3, |_, positions| {
+            let mut primitives = primitives;
+            for primitive in primitives.as_array_mut().unwrap() {
+                primitive["attributes"] = json!({"POSITION": positions});
+            }
+            primitives
+        })
+    };
+    assert!(holds("lines.glb", &of(json!([{"mode": 1}, {"mode": 3}])).glb()));
+    assert!(!holds("mixed.glb", &of(json!([{"mode": 3}, {"mode": 4}])).glb()));
+    assert!(!holds("mesh.glb", &of(json!([{}])).glb()), "triangles are the default");
+    assert!(!holds("empty.glb", &GltfFile::default().glb()));
+    assert!(!holds("broken.glb", b"glTF"));
+    assert!(holds("lines.obj", b"v 0 0 0\nv 0 1 0\nl 1 2\n"));
+    assert!(!holds("mesh.obj", b"v 0 0 0\nv 0 1 0\nv 1 0 0\nf 1 2 3\nl 1 2\n"));
+    assert!(!holds("hair.csv", b"0,0,0,0\n0,0,1,0\n"), "it has no mesh to be told from");
+    assert!(!holds_only_curves(&folder.path().join("missing.glb")));
 }
