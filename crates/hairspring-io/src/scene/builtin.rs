@@ -50,11 +50,12 @@ pub(super) fn settings(text: &str, scene: &SceneFile, file: &BuiltinFile) -> Res
 
 impl Reader<'_> {
     /// Builds the scene.
-    pub(super) fn builtin(&self, file: &BuiltinFile) -> crate::Result<Scene> {
+    pub(super) fn builtin(&mut self, file: &BuiltinFile) -> crate::Result<Scene> {
         let mut made = builtin::scene(&options(self.text, file).map_err(|p| p.in_file(self.path))?);
         if file.motion == Some(false) {
             made.clip = None;
         }
+        self.apply_maps(&file.maps, &mut made.grooms[0].groom, None)?;
         Ok(made)
     }
 }

@@ -4,7 +4,7 @@ use super::{
     air::{self, lines},
     file::{BodyFile, BuiltinFile, ClipFile, KeyFile, PropFile, SceneFile},
     groom_file::{GroomFile, Placement},
-    map_file::Channel,
+    map_file::{Channel, MapsFile},
     props,
     sentence::{line_at, line_of_key, line_of_setting},
 };
@@ -52,6 +52,13 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             check(builtin.guides != Some(Guides::FromGroom), "guides", "a number above 0 or \"all\""),
         ];
         first_failure(text, section("[builtin]"), &checks)?;
+        maps(text, &builtin.maps, false)?;
+        for (name, map) in builtin.maps.all() {
+            if let Some(map) = map.as_ref().filter(|map| map.get_ref().vertex_colors) {
+                let why = format!("the map `{name}` of [builtin] needs a `texture` or `values`");
+                return Err(Problem::line(line_at(text, map.span().start), why));
+            }
+        }
         if scene.body.is_some() || scene.collision.is_some() {
             return Err(Problem::line(
                 section("[builtin]"),
@@ -95,7 +102,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         in_range(text, from, &groom.look)?;
         in_range(text, from, &groom.effects)?;
         in_range(text, from, &groom.thicken)?;
-        maps(text, groom)?;
+        maps(text, &groom.maps, groom.grow.is_some())?;
         if let Some(grow) = &groom.grow {
             let from = line_at(text, grow.span().start);
             in_range(text, from, &grow.get_ref().growth())?;
@@ -190,9 +197,9 @@ fn colored_once(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     Ok(())
 }
 
-/// Checks the maps of a groom.
-fn maps(text: &str, groom: &GroomFile) -> Result<(), Problem> {
-    for (name, map) in groom.maps.all() {
+/// Checks the maps of a groom, whose strands are grown if `grown`.
+fn maps(text: &str, maps: &MapsFile, grown: bool) -> Result<(), Problem> {
+    for (name, map) in maps.all() {
         let Some(map) = map else { continue };
         let (line, file) = (line_at(text, map.span().start), map.get_ref());
         let wrong = |expected: &str| Err(Problem::line(line, format!("the map `{name}` {expected}")));
@@ -202,8 +209,8 @@ fn maps(text: &str, groom: &GroomFile) -> Result<(), Problem> {
         if !(file.low.is_finite() && file.high.is_finite()) {
             return wrong("needs finite numbers for `low` and `high`");
         }
-        if name == "comb" && groom.grow.is_none() {
-            return wrong("is the direction of hair that grows; a `file` has its own");
+        if name == "comb" && !grown {
+            return wrong("is the direction of hair that grows from `groom.grow`; other hair has its own");
         }
         if name == "comb" && (file.low != 0.0 || file.high < 0.0 || file.channel != Channel::default()) {
             return wrong(

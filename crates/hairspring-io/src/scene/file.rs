@@ -16,6 +16,7 @@ use std::{collections::BTreeMap, path::PathBuf};
 use toml::Spanned;
 
 use super::groom_file::{GroomFile, Placement, guides};
+use super::map_file::MapsFile;
 use crate::Axis;
 
 /// A file named in a scene, relative to the scene's folder, with its position in the text for messages.
@@ -115,6 +116,11 @@ define_settings! {
         /// Styling effects of its follow hairs.
         #[serde(default)]
         effects: Effects, "none", {text "the fields of `groom.effects`"}, default "none of them";
+        /// Parameters that vary over the scalp, as `groom.maps`: textures or lists of numbers. The texture coordinates
+        /// are those of the scalp seen from above: the crown is the middle, the face is below, and her left is on the
+        /// right.
+        #[serde(default)]
+        maps: MapsFile, "none", {text "the fields of `groom.maps` without `comb`"}, default "none";
     }
 }
 
@@ -263,7 +269,10 @@ pub(super) enum TravelName {
 
 /// A name or a list of names.
 #[derive(Deserialize)]
-#[serde(untagged, expecting = "expected a material's name or a list of names")]
+#[serde(
+    untagged,
+    expecting = "expected a material's name, such as \"soft\", or a list of names; its settings are in a table of their own, such as [material.soft]"
+)]
 pub(super) enum OneOrMore {
     One(String),
     More(Vec<String>),

@@ -4,6 +4,7 @@ use super::{
     Reader, body, builtin,
     file::{BodyFile, ClipFile, PropFile, SceneFile},
     groom_file::GroomGeometry,
+    map_file::MapsFile,
     material,
     props::{beside_props, with_props},
     sentence::unknown,
@@ -15,8 +16,8 @@ use hairspring_scene::{InitialContact, Scene, SceneSheet, builtin::BuiltinOption
 /// The geometry that a scene file describes.
 #[derive(PartialEq)]
 pub(super) struct Asked<'a> {
-    /// The built-in scene, and whether it uses its own motion.
-    builtin: Option<(BuiltinOptions, bool)>,
+    /// The built-in scene, whether it uses its own motion, and its maps.
+    builtin: Option<(BuiltinOptions, bool, &'a MapsFile)>,
     body: &'a Option<BodyFile>,
     collision: &'a Option<BodyFile>,
     sheets: &'a [BodyFile],
@@ -41,7 +42,7 @@ pub(super) fn asked<'a>(text: &str, file: &'a SceneFile) -> std::result::Result<
     if let Some(named) = &file.builtin {
         let settings = builtin::settings(text, file, named)?;
         radii.extend(settings.grooms.iter().map(|groom| radii_of(&groom.materials)));
-        made = Some((builtin::options(text, named)?, named.motion != Some(false)));
+        made = Some((builtin::options(text, named)?, named.motion != Some(false), &named.maps));
     }
     for groom in &file.groom {
         radii.push(radii_of(&material::of_groom(text, file, groom)?));

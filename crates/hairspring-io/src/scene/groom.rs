@@ -58,7 +58,7 @@ impl Reader<'_> {
                 SkinDistance::new(&groom, &skin.tree).and_then(|distance| distance.note(named.reverse));
             self.note(&self.resolve(file), note.into_iter().collect());
         }
-        self.apply_maps(named, &mut groom, body.map(|b| &b.mesh))?;
+        self.apply_maps(&named.maps, &mut groom, body.map(|b| &b.mesh))?;
         if named.thicken.copies > 0 {
             groom.roots.clear();
             thicken(&mut groom, &named.thicken, body.map(|b| &b.mesh));

@@ -1,4 +1,4 @@
-//! `maps` of a `[[groom]]`: parameters that vary over the scalp.
+//! `maps` of a `[[groom]]` and of `[builtin]`: parameters that vary over the scalp.
 //!
 //! ```text
 //! value of a strand = low + (high − low) · map at its root     map: a texture by texture coordinates, the colors of
@@ -7,7 +7,6 @@
 
 use super::{
     Reader,
-    groom_file::GroomFile,
     map_file::{Channel, MapFile, MapsFile},
 };
 use crate::{Place, Problem, Result, load, picture::Picture, text::as_text};
@@ -136,18 +135,17 @@ impl Reader<'_> {
     /// Applies the maps of a groom, except that of its direction.
     pub(super) fn apply_maps(
         &mut self,
-        named: &GroomFile,
+        maps: &MapsFile,
         groom: &mut Groom,
         mesh: Option<&Mesh>,
     ) -> Result<()> {
-        let maps: Vec<_> = named
-            .maps
+        let named: Vec<_> = maps
             .all()
             .into_iter()
             .filter_map(|(name, map)| map.as_ref().map(|map| (name, map)))
             .filter(|(name, _)| *name != "comb")
             .collect();
-        if maps.is_empty() {
+        if named.is_empty() {
             return Ok(());
         }
         let strands = groom.strand_count();
@@ -156,7 +154,7 @@ impl Reader<'_> {
             let root = roots.as_ref()?.get(s)?;
             Some((root.triangle as usize, root.barycentric))
         };
-        for (name, map_file) in maps {
+        for (name, map_file) in named {
             let near = map_file.span().start;
             let map = self.map(name, map_file, strands, mesh)?;
             let no_uvs = groom.root_uvs.is_empty() && mesh.is_none_or(|mesh| mesh.uvs.is_empty());
@@ -183,13 +181,12 @@ impl Reader<'_> {
                 _ => scale(groom, name, &values),
             }
         }
-        if named.maps.length.is_some() {
+        if maps.length.is_some() {
             let lengths: Vec<f32> = (0..groom.strand_count()).map(|s| groom.strand_length(s)).collect();
             keep_strands(groom, |s| lengths[s] > 0.0);
         }
         if groom.strand_count() == 0 && strands > 0 {
-            let near =
-                named.maps.density.as_ref().or(named.maps.length.as_ref()).map_or(0, |m| m.span().start);
+            let near = maps.density.as_ref().or(maps.length.as_ref()).map_or(0, |m| m.span().start);
             return Err(self.wrong(near, "maps", "the maps leave no strand of the groom".into()));
         }
         Ok(())

@@ -33,8 +33,12 @@ pub(super) fn problem_in_table(
     Problem::line(line, reworded(error.message(), key))
 }
 
-/// The key whose value begins or continues at byte `at`.
+/// The key whose value begins or continues at byte `at`, which may be in the header of its table.
 fn key_of(text: &str, at: usize) -> Option<&str> {
+    let line = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
+    if let Some(name) = text[line..].lines().next().and_then(header_of) {
+        return name.rsplit('.').next();
+    }
     let before = text.get(..at)?;
     let before = before[..before.rfind('=')?].trim_end();
     let key = before.rsplit(|c: char| !(c.is_alphanumeric() || "_-".contains(c))).next()?;

@@ -203,3 +203,50 @@ fn maps_that_cannot_work_are_refused() {
     let error = refused(&folder, &scene("bend = { texture = \"ramp.png\" }"));
     assert!(error.contains("needs texture coordinates"), "{error}");
 }
+
+#[test]
+fn maps_vary_the_hair_of_the_built_in_head() {
+    let folder = folder();
+    // White at the right half of the picture, which is her left (+X).
+    let pixel = |x: u32, _| image::Luma([if x >= 32 { 255u8 } else { 0 }]);
+    image::GrayImage::from_fn(64, 64, pixel).save(folder.path().join("left.png")).unwrap();
+    // White at the lower half, which is the front (+Z).
+    let pixel = |_, y: u32| image::Luma([if y >= 32 { 255u8 } else { 0 }]);
+    image::GrayImage::from_fn(64, 64, pixel).save(folder.path().join("front.png")).unwrap();
+    let hair = |maps: &str| {
+        let text = format!("[builtin]\nstrands = 300\nguides = 30\nmaps = {{ {maps} }}\n");
+        read(folder.path(), &text).unwrap().value.grooms.remove(0).groom
+    };
+    let whole = hair("");
+    let cut = hair(
+        "length = { texture = \"left.png\", low = 0.5 }, bend = { texture = \"front.png\", low = 2, high = 4 }",
+    );
+    assert_eq!(cut.strand_count(), 300);
+    let mut compared = [0; 2];
+    for s in 0..300 {
+        let root = whole.strand(s)[0];
+        // The texture changes within a pixel of the middle.
+        if root.x.abs() > 0.01 {
+            let share = cut.strand_length(s) / whole.strand_length(s);
+            let want = if root.x > 0.0 { 1.0 } else { 0.5 };
+            assert!((share - want).abs() < 0.02, "strand {s} at {root}: {share}");
+            compared[usize::from(root.x > 0.0)] += 1;
+        }
+        if (root.z + 0.015).abs() > 0.01 {
+            let want = if root.z > -0.015 { 4.0 } else { 2.0 };
+            assert!((cut.scale(s).bend - want).abs() < 0.02, "strand {s} at {root}");
+        }
+    }
+    assert!(compared.iter().all(|n| *n > 100), "{compared:?}");
+    let thinned = hair("density = { texture = \"left.png\" }");
+    assert!((0..thinned.strand_count()).all(|s| thinned.strand(s)[0].x > -0.01));
+    assert!(thinned.strand_count() > 100);
+    for (maps, words) in [
+        ("comb = { texture = \"left.png\" }", ["line 4", "`comb`"]),
+        ("length = { vertex_colors = true }", ["line 4", "needs a `texture` or `values`"]),
+    ] {
+        let text = format!("[builtin]\nstrands = 300\nguides = 30\nmaps = {{ {maps} }}\n");
+        let error = refused(&folder, &text);
+        assert!(words.iter().all(|word| error.contains(word)), "{error}");
+    }
+}

@@ -254,6 +254,14 @@ fn values_of_the_wrong_type_are_described_in_toml() {
         ("transform.position = 3\n".into(), &["line 3", "`position` needs", three]),
         ("[[collider]]\nshape.sphere = { radius = 1 }\n".into(), &["line 4", "`center` is missing"]),
         ("guides = 2.5\n".into(), &["line 3", "`guides` needs a number of guides above 0"]),
+        (
+            "[groom.material]\nbend = 2.0\n".into(),
+            &["line 3", "`material` needs a material's name", "such as [material.soft]"],
+        ),
+        (
+            "guides = 3\n[groom.transform]\nscale = 2.0\nrotation = 3.0\n".into(),
+            &["line 6", "`rotation` needs"],
+        ),
         ("colors = \"lok\"\n".into(), &["line 3", "did you mean `look`?"]),
         ("reverse = \"yes\"\n".into(), &["line 3", "`reverse` needs true or false"]),
     ] {

@@ -9,7 +9,7 @@ use super::{
     shape,
     style::Cut,
 };
-use glam::{IVec3, Vec3};
+use glam::{IVec3, Vec2, Vec3, Vec3Swizzles, vec2, vec3};
 use hairspring::{
     body::Mesh,
     groom::{DEFAULT_RADIUS, Groom},
@@ -25,6 +25,9 @@ const WISP: usize = 20;
 const CLEARANCE: f32 = 0.0005;
 /// Names of the groups, by the position of the root.
 const GROUPS: [&str; 3] = ["front", "sides", "back"];
+
+/// Middle of the cranium, from which the texture coordinates of the roots are measured [m].
+const CRANIUM: Vec3 = vec3(0.0, 0.03, -0.015);
 
 /// A hair before waves are added: its path, and the parameters that it shares with its lock.
 struct Strand {
@@ -73,7 +76,17 @@ pub fn groom(mesh: &Mesh, cut: &Cut, count: usize, points: usize, seed: u32) -> 
     groom.radii = radii.repeat(count);
     groom.group_names = GROUPS.map(String::from).to_vec();
     groom.groups = hairs.iter().map(|h| group(&h.place)).collect();
+    groom.root_uvs = hairs.iter().map(|h| texture_coordinates(h.place.root)).collect();
     groom
+}
+
+/// Returns the texture coordinates of a root: the scalp seen from above, with the crown in the middle, the face at the
+/// lower edge and her left on the right. The distance from the middle is the angle from the vertical, as in a polar map.
+fn texture_coordinates(root: Vec3) -> Vec2 {
+    let from_middle = root - CRANIUM;
+    let angle = from_middle.angle_between(Vec3::Y);
+    let around = from_middle.xz().normalize_or_zero() * vec2(1.0, -1.0);
+    Vec2::splat(0.5) + around * (angle / TAU)
 }
 
 /// Returns the index of a root's group in [`GROUPS`].
