@@ -20,7 +20,7 @@ pub const CASE: Case = Case {
     points_fixed: false,
     out_of_reach: |method| {
         (method.points < 48)
-            .then_some("friction creeps before it slips, and more so with few points on the cylinder")
+            .then_some("a strand begins to slide slowly, and more so with few points on the cylinder")
     },
     reference: |values| Ok(vec![(values[0] * PI).exp()]),
     measure: |values, method| {
@@ -49,7 +49,7 @@ const SETTLING: u32 = 30;
 const EASING: u32 = 60;
 const WATCHED: u32 = 120;
 
-/// A load that sank by more than this number of segments has slipped. A strand that holds creeps by less.
+/// A load that sank by more than this number of segments has slipped. A strand that holds sinks by less.
 const SLIPPED: f64 = 2.0;
 
 /// Returns whether the strand slips. It hangs over a horizontal cylinder, and only the loads have weight: the

@@ -59,8 +59,8 @@ pub(crate) struct DeepestPoint<S: Simd> {
     /// Direction out of the collider, a unit vector across the segment. The minimum distance grows fastest
     /// along it.
     pub normal: V3<S>,
-    /// Rate at which that distance grows along `normal` if the segment crosses walls that face away from each
-    /// other, else 1 [1].
+    /// Rate at which that distance grows along `normal` if the segment crosses an edge of a convex shape, or walls
+    /// that face away from each other; else 1 [1].
     pub gain: F<S>,
     /// Position along the segment: 0 at its beginning, 1 at its end.
     pub at: F<S>,
@@ -95,12 +95,16 @@ impl<S: Simd> DeepestPoint<S> {
     ///     ╲___│___╱       over the wall's rim; along one side's normal it would decrease here and increase farther on
     /// ```
     #[inline(always)]
-    fn between(simd: S, found: Mask<S>, u: V3<S>, (best, other): (SdfSample<S>, SdfSample<S>)) -> Self {
+    fn between(
+        simd: S,
+        (convex, found): (bool, Mask<S>),
+        u: V3<S>,
+        (best, other): (SdfSample<S>, SdfSample<S>),
+    ) -> Self {
         let share = best.slope / (best.slope - other.slope);
-        // Only walls that face away from each other are combined. At a blunter edge the nearer side's normal
-        // across the segment is enough. (The threshold is not 0: at the right angles of a box, rounding would
-        // flip between the two cases.)
-        let thin = opposite(&best, &other) & best.rise.dot(other.rise).simd_lt(APART);
+        // Of a shape that may be concave, only walls that face away from each other are combined.
+        let apart = if convex { f32::INFINITY } else { APART };
+        let thin = opposite(&best, &other) & best.rise.dot(other.rise).simd_lt(apart);
         let share = thin.select(share, F::splat(simd, 0.0));
         let rise = (other.rise - best.rise).mul_add(share, best.rise);
         let (gain, across) = (rise - u * rise.dot(u)).length_and_unit();
@@ -123,8 +127,8 @@ pub(crate) const STEEP: f32 = 0.02;
 const APART: f32 = -0.1;
 
 /// Number of pieces between the samples of a segment: four, or more where a piece would be longer than half a
-/// cell of a field, up to the second number [1]. Between its nodes a field curves within one cell. Both
-/// numbers are even, so that the middle is a sample.
+/// cell of a field or half the thickness of a thin shell, up to the second number [1]. Between its nodes a field
+/// curves within one cell, and so does a shell around its rim. Both numbers are even, so that the middle is a sample.
 const PIECES: [usize; 2] = [4, 12];
 
 /// Assumed maximum slope of a field [1]: 1 where it is smooth, and 2 between two nodes on opposite sides of a
@@ -148,13 +152,14 @@ pub(crate) fn find_deepest_point<S: Simd>(
     (a, e): (V3<S>, V3<S>),
     (from, within): (F<S>, F<S>),
 ) -> Option<DeepestPoint<S>> {
-    if pose.shape.is_convex_formula() {
+    if pose.shape.is_convex() {
         return deepest_convex(simd, pose, (a, e), (from, within));
     }
     let splat = |x: f32| F::<S>::splat(simd, x);
     let (l, u) = e.length_and_unit();
     let spacing = match &pose.shape {
         ColliderShape::Field(grid) => 0.5 * grid.cell(),
+        ColliderShape::Sheet(sheet) => sheet.thickness(),
         _ => f32::INFINITY,
     };
     let [mut pieces, most] = PIECES;
@@ -200,7 +205,7 @@ pub(crate) fn find_deepest_point<S: Simd>(
     }
     let (best, other) = seen.sides(refined);
     let found = found & best.distance.simd_lt(within);
-    Some(DeepestPoint::between(simd, found, u, (best, other)))
+    Some(DeepestPoint::between(simd, (false, found), u, (best, other)))
 }
 
 /// Maximum number of samples of a segment near a convex shape.
@@ -260,7 +265,9 @@ fn deepest_convex<S: Simd>(
     let lower = low.distance.simd_lt(high.distance);
     let sides = (SdfSample::select(lower, low, high), SdfSample::select(lower, high, low));
     found &= sides.0.distance.simd_lt(within);
-    found.any_true().then(|| DeepestPoint::between(simd, found, u, sides))
+    found
+        .any_true()
+        .then(|| DeepestPoint::between(simd, (matches!(pose.shape, ColliderShape::Hull(_)), found), u, sides))
 }
 
 /// Returns where the segment may be deeper than at the deepest of the samples, which are `apart`. The point

@@ -63,16 +63,15 @@ impl ColliderShape {
         }
     }
 
-    /// Returns whether the shape is convex and given by a formula. The deepest point of a segment is then
-    /// searched for exactly. Hulls are sampled instead, because the springs model jitters on their edges
-    /// otherwise.
-    pub(crate) fn is_convex_formula(&self) -> bool {
+    /// Returns whether the shape is known to be convex. The deepest point of a segment is then searched for exactly.
+    pub(crate) fn is_convex(&self) -> bool {
         matches!(
             self,
             ColliderShape::Sphere { .. }
                 | ColliderShape::Capsule { .. }
                 | ColliderShape::Cuboid { .. }
                 | ColliderShape::Plane { .. }
+                | ColliderShape::Hull(_)
         )
     }
 

@@ -204,6 +204,11 @@ impl<'a> StrandRef<'a> {
         self.value(i, state::NORMAL_FORCE)
     }
 
+    /// Stretch of the friction spring between particle `i` and a collider [m]; 0 without contact.
+    pub fn friction_stretch(self, i: usize) -> Vec3 {
+        self.vector(i, state::FRICTION_STRETCH)
+    }
+
     /// Contact of a collider with the segment that ends at particle `i`: its place on the segment, from 0 at the
     /// start to 1 at the end, and its force [N]; 0 without contact.
     pub fn segment_contact(self, i: usize) -> (f32, f32) {
@@ -322,6 +327,11 @@ impl<'a> StrandMut<'a> {
     pub fn set_normal_force(&mut self, i: usize, force: f32) {
         let lane = self.lane % LANES;
         self.rows(i)[state::NORMAL_FORCE].0[lane] = force;
+    }
+
+    /// Sets the stretch of the friction spring between particle `i` and a collider [m].
+    pub fn set_friction_stretch(&mut self, i: usize, stretch: Vec3) {
+        self.set(i, state::FRICTION_STRETCH, stretch);
     }
 
     /// Sets the pose of its root relative to the anchor at rest in this frame.

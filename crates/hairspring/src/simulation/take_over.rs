@@ -79,7 +79,8 @@ impl Simulation {
         let model = self.model.tiles[place / LANES].model;
         let forces = self.carries_forces() && old.carries_forces();
         let tensions = [Some(state::TENSION), (model == Elastic::Springs).then_some(springs::SIDE)];
-        let kept = |at: usize| !forces && (tensions.contains(&Some(at)) || at == state::NORMAL_FORCE);
+        let contact = |at| at == state::NORMAL_FORCE || at >= state::FRICTION_STRETCH;
+        let kept = |at: usize| !forces && (tensions.contains(&Some(at)) || contact(at));
         let (tile, was) = (self.model.tiles[place / LANES], old.model.tiles[from / LANES]);
         let (lane, from_lane) = (place % LANES, from % LANES);
         for i in 0..tile.points.min(was.points) {
@@ -137,6 +138,7 @@ impl Simulation {
             if forces {
                 let mut strand = self.strand_mut(place);
                 strand.set_normal_force(i, source.normal_force(i_was));
+                strand.set_friction_stretch(i, source.friction_stretch(i_was));
                 if stride == was {
                     strand.set_tension(i, source.tension(i_was));
                 }

@@ -12,21 +12,16 @@
 //! cylinder sank in and was pushed out again in every substep, from root to tip. Each time it moved half a
 //! millimeter along the surface, and so ran off toward its root.
 //!
-//! Friction is −μN s/|s|, where s is the slide along the surface. |s| is taken from the substep before (the
-//! lagged secant of Li et al. 2020, *Incremental Potential Contact*, §5, for one step). A point that slides
-//! slower in every substep comes to rest; one that is pulled with more than μN accelerates.
-//!
-//! The secant stiffness is at most [`STICK`] k. A strand at rest therefore creeps by up to μN over that
-//! stiffness in a substep: μ times 13 µm/s under its own weight, at four substeps. A higher limit reduces the
-//! creep, but slows the onset of sliding when the pull is only a little larger than the friction limit,
-//! because the slide grows from substep to substep by their ratio.
+//! Friction is the force of a spring along the surface, which yields at the Coulomb limit (see
+//! [`FrictionSpring`]). A strand at rest therefore does not creep, and a point that is pulled by more than the limit
+//! accelerates.
 //!
 //! Only points with N > 0 take part. N starts in `post_solve`, from the correction that pushed the point out.
 
 use super::{
-    assemble::SubstepContext,
+    assemble::{Linearization, SubstepContext},
     colliders::{contact, surface_displacement},
-    friction::Friction,
+    friction::{Friction, FrictionSpring},
     model::stretch::STRETCH,
     system::System,
     tile::{Tile, rest, state},
@@ -46,17 +41,18 @@ pub mod scratch {
     pub const ROWS: usize = 8;
 }
 
-/// Ratio of the stiffness of sticking friction to that of contact [1]. The value is a compromise, found by
-/// trial, between creep on a slope (0.36 mm in 10 s at 1, 0.02 mm at 16) and the load at which a strand over
-/// a cylinder slips (at μ = 1 too high by 6 % at 1, by 10 % at 16).
-pub const STICK: f32 = 8.0;
+/// Ratio of the stiffness of a point's friction spring to that of contact [1]. At the limit, under its own weight, a
+/// point stretches its spring by μ times 0.1 µm at four substeps. The value is a compromise, found by trial: with a
+/// softer spring, thin boxes lose more hair, and a stiffer one makes a strand that begins to slide slower at first (at
+/// μ = 0.3, it slips over a cylinder at a load that is too high by 1.8 % at 4 and by 2.3 % at 8).
+const STICK: f32 = 4.0;
 
 /// Adds the contact of point `i`, the second of the window. `x` is its position relative to the root, `drift`
 /// its predicted displacement, and `way` its displacement since the start of the substep, including `drift`.
 #[inline(always)]
 pub fn assemble_contact<S: Simd, const B: usize>(
     simd: S,
-    step: &SubstepContext<S>,
+    (sweep, step): (Linearization, &SubstepContext<S>),
     tile: &mut Tile,
     (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
     system: &mut impl System<S, B>,
@@ -84,12 +80,19 @@ pub fn assemble_contact<S: Simd, const B: usize>(
     let along = |v: V3<S>| v - normal * normal.dot(v);
     let k = shut.select(m_h2 * STRETCH, zero);
     let before = V3::load(simd, &tile.state[i][state::V..]) * F::splat(simd, step.h);
-    let (slid, _) = along(before - carried).length_and_unit();
-    let rub = Friction::of(simd, step.h, tile, i).secant(force, slid, k * STICK);
-    system.add_diagonal(1, Sym3::outer(normal, k - rub).add_identity(rub));
+    let slid = along(before - carried);
+    let limit = Friction::of(simd, step.h, tile, i).limit(force, slid.length_and_unit().0);
+    let mut z = along(V3::load(simd, &tile.state[i][state::FRICTION_STRETCH..]));
+    if sweep == Linearization::Initial {
+        z += slid;
+    }
+    let FrictionSpring { stretch, stiffness } = FrictionSpring::new((limit, k * STICK), z, slid);
+    V3::select(shut, stretch, V3::zero(simd)).store(&mut tile.state[i][state::FRICTION_STRETCH..]);
+    system.add_diagonal(1, Sym3::outer(normal, k - stiffness).add_identity(stiffness));
     system.add_force(
         1,
-        normal * (force - k * (gap + normal.dot(drift))) - along(way + step.moved - carried) * rub,
+        normal * (force - k * (gap + normal.dot(drift)))
+            - (stretch + along(way + step.moved - carried)) * stiffness,
     );
 }
 
@@ -140,5 +143,10 @@ pub fn update_contact_multiplier<S: Simd>(
     }
     let k = load(simd, &tile.rest[i][rest::MASS]) * (STRETCH / (step.h * step.h));
     let gap = load(simd, &work[scratch::GAP]) + V3::load(simd, &work[scratch::NORMAL..]).dot(delta);
-    store(shut.select((force - k * gap).max(0.0), force), &mut tile.state[i][state::NORMAL_FORCE]);
+    let force = (force - k * gap).max(0.0);
+    let rows = &mut tile.state[i];
+    store(shut.select(force, load(simd, &rows[state::NORMAL_FORCE])), &mut rows[state::NORMAL_FORCE]);
+    // A contact that opens forgets where it stuck.
+    let stretch = V3::load(simd, &rows[state::FRICTION_STRETCH..]);
+    V3::select(force.simd_gt(0.0), stretch, V3::zero(simd)).store(&mut rows[state::FRICTION_STRETCH..]);
 }

@@ -11,7 +11,7 @@ use super::{
     elements::PredictedState,
     model::Model,
     scratch::Scratch,
-    segment::assemble_segment_contact,
+    segment_contact::assemble_segment_contact,
     system::{PendingRows, System},
     tether,
     tile::{Tile, anisotropic_drag, hold, position_spring, rest, segment_contact, state},
@@ -141,6 +141,6 @@ fn act<S, M, const B: usize, const N: usize>(
     }
     if on_strand {
         tether::pull(simd, step, tile, (next, x, drift), pending);
-        assemble_contact(simd, step, tile, (next, x, drift, way), pending, &mut contacts[next]);
+        assemble_contact(simd, (sweep, step), tile, (next, x, drift, way), pending, &mut contacts[next]);
     }
 }

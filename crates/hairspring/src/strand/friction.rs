@@ -10,11 +10,11 @@
 //!
 //! The transition is that of Stribeck (1902, *Die wesentlichen Eigenschaften der Gleit- und Rollenlager*). It
 //! replaces the exponential of Canudas de Wit et al. 1995, *A New Model for Control of Systems with
-//! Friction*, by a fraction and keeps their v_s. A discontinuous change at 5 µm/s, the smallest speed that
-//! [`super::contact`] distinguishes from rest, would release every point that vibrates.
+//! Friction*, by a fraction and keeps their v_s. A discontinuous change would release every point that
+//! vibrates.
 
 use super::tile::{Tile, along, strand};
-use crate::simd::lanes::{F, Simd, load};
+use crate::simd::lanes::{F, Simd, V3, load};
 
 /// v_s of the formula: the speed at which friction is halfway from static to kinetic [m/s].
 const SLIDES: f32 = 1e-3;
@@ -47,11 +47,10 @@ impl<S: Simd> Friction<S> {
         self.kinetic + (one - self.kinetic) / x.mul_add(x, one)
     }
 
-    /// Secant stiffness of friction: force over slide, for the normal force `normal` [N] and the slide `slid`
-    /// > 0 of the substep before [m]; at most `stiffest` [N/m].
+    /// Largest friction force [N] for the normal force `normal` [N], at a slide of length `slid` in a substep [m].
     #[inline(always)]
-    pub fn secant(&self, normal: F<S>, slid: F<S>, stiffest: F<S>) -> F<S> {
-        (self.holds * normal / slid * self.over_static(slid)).min(stiffest)
+    pub fn limit(&self, normal: F<S>, slid: F<S>) -> F<S> {
+        self.holds * normal * self.over_static(slid)
     }
 
     /// Share of a slide of square `slide2` [m²] that friction prevents at a point that was pushed out by
@@ -61,5 +60,36 @@ impl<S: Simd> Friction<S> {
         let slide = slide2.max(1e-30).sqrt();
         let holds = self.holds * depth;
         (holds / slide * self.over_static((slide - holds).max(0.0))).min(1.0)
+    }
+}
+
+/// The spring along the surface between a collider and a point that sticks to it. It yields at the friction limit μN,
+/// so that the place where it is relaxed follows a point that slides (Cundall & Strack 1979, *A Discrete Numerical
+/// Model for Granular Assemblies*).
+///
+/// ```text
+///   f = −k (z + s)      k = min(K, μN / |z + s⁻|)                   z  stretch at the start of the substep
+///   z ← z + s⁻,         shortened to |z| ≤ μN / K                   s  slide in the substep, s⁻ in the one before
+/// ```
+///
+/// The force is linear in the slide, which the solve finds. At the limit, k is a secant from the substep before (as
+/// in Li et al. 2020, *Incremental Potential Contact*, §5).
+pub struct FrictionSpring<S: Simd> {
+    /// z, along the surface [m].
+    pub stretch: V3<S>,
+    /// k [N/m].
+    pub stiffness: F<S>,
+}
+
+impl<S: Simd> FrictionSpring<S> {
+    /// Shortens the stretch `z` [m] of a spring of stiffness `stiffest` [N/m] to the friction `limit` [N]. `slid` is
+    /// the slide of the substep before [m].
+    #[inline(always)]
+    pub fn new((limit, stiffest): (F<S>, F<S>), z: V3<S>, slid: V3<S>) -> Self {
+        let (size, _) = z.length_and_unit();
+        let one = F::splat(limit.simd, 1.0);
+        let stretch = z * (limit / (size * stiffest).max(1e-30)).min(one);
+        let (ahead, _) = (stretch + slid).length_and_unit();
+        Self { stretch, stiffness: (limit / ahead).min(stiffest) }
     }
 }

@@ -25,6 +25,7 @@ pub(crate) mod rest_shape;
 pub(crate) mod root;
 pub(crate) mod scratch;
 pub(crate) mod segment;
+pub(crate) mod segment_contact;
 pub(crate) mod substitute;
 pub(crate) mod system;
 pub(crate) mod tether;

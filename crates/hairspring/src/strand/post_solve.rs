@@ -23,7 +23,7 @@ use super::{
     truss::beside,
 };
 use crate::collide::STEEP;
-use crate::simd::lanes::{F, Mask, Simd, V3, load, store};
+use crate::simd::lanes::{F, Mask, Row, Simd, V3, load, store};
 
 /// Parameters of the post-solve stage.
 pub struct PostSolveParams {
@@ -118,11 +118,18 @@ pub fn post_solve<S: Simd>(
                 e,
             );
             shift = e - solved;
-            let press = &mut tile.state[i][state::NORMAL_FORCE];
-            store(free.select(load(simd, press), F::splat(simd, 0.0)), press);
+            // A held point has no contact.
+            let keep = |rows: &mut [Row]| {
+                for row in rows {
+                    store(free.select(load(simd, row), F::splat(simd, 0.0)), row);
+                }
+            };
+            let rows = &mut tile.state[i];
+            keep(&mut rows[state::NORMAL_FORCE..=state::NORMAL_FORCE]);
+            keep(&mut rows[state::FRICTION_STRETCH..state::FRICTION_STRETCH + 3]);
             if let Some(rows) = tile.segment_contacts.get_mut(i) {
-                let force = &mut rows[segment_contact::FORCE];
-                store(free.select(load(simd, force), F::splat(simd, 0.0)), force);
+                keep(&mut rows[segment_contact::FORCE..=segment_contact::FORCE]);
+                keep(&mut rows[segment_contact::FRICTION_STRETCH..]);
             }
         }
         let mut last = e;

@@ -8,7 +8,7 @@ use super::{
     profile::Profile,
     project::Projection,
     scratch::Scratch,
-    segment::update_segment_contact_multiplier,
+    segment_contact::update_segment_contact_multiplier,
     tile::{Tile, rest, state},
 };
 use crate::simd::lanes::{F, Simd, V3, load, store};

@@ -21,8 +21,10 @@ pub mod state {
     pub const NORMAL: usize = 7;
     /// Contact force of a collider on this point, from the last substep; 0 without contact [N].
     pub const NORMAL_FORCE: usize = 10;
+    /// Stretch of the friction spring between this point and a collider, 3 rows; 0 without contact [m].
+    pub const FRICTION_STRETCH: usize = 11;
     /// Rows a point.
-    pub const ROWS: usize = 11;
+    pub const ROWS: usize = 14;
 }
 
 /// Rows of the rest shape a point.
@@ -138,8 +140,10 @@ pub mod segment_contact {
     pub const FORCE: usize = 0;
     /// Place on the segment: 0 at its start, 1 at its end.
     pub const AT: usize = 1;
+    /// Stretch of the friction spring there, along the segment and across it; 2 rows, 0 without contact [m].
+    pub const FRICTION_STRETCH: usize = 2;
     /// Rows a point.
-    pub const ROWS: usize = 2;
+    pub const ROWS: usize = 4;
 }
 
 /// Rows a point of the state that the second-order integrator carries.

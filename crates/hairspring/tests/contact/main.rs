@@ -7,6 +7,7 @@ mod contact_works_at_any_scale;
 mod distance_field_is_exact_near_the_surface;
 mod fast_colliders_take_hair_along;
 mod follow_hairs_stay_out_of_sheets;
+mod hair_over_an_edge_comes_to_rest;
 mod segment_penetration_is_measured;
 mod segments_stay_out_of_colliders;
 mod thin_colliders_keep_their_hair;

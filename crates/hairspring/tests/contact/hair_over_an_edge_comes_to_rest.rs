@@ -1,0 +1,142 @@
+//! Promise: hair over the edge of a box, and over a stone with many edges, comes to rest: after 10 and 15 s, no point
+//! moves faster than 1 mm/s.
+//!
+//! # Limitations
+//! Over an edge that is steep on the roots' side (60° and more), hair trembles by up to 5 mm/s, and so does the springs
+//! model over the edge of a hull (3 mm/s).
+
+use glam::{EulerRot, Mat3, Vec3};
+use hairspring::{
+    collide::{ColliderShape, Hull, MovingCollider},
+    groom::Groom,
+    material::{Material, Model, preset},
+    settings::Solver,
+    simulation::Simulation,
+};
+use hairspring_test::{REST, points, roots, step};
+use std::sync::Arc;
+
+/// Length of a segment [m].
+const SEGMENT: f32 = 0.25 / 31.0;
+
+/// A strand from `root` on along `way`.
+fn strand(root: Vec3, way: Vec3) -> Vec<Vec3> {
+    (0..32).map(|i| root + way.normalize() * (SEGMENT * i as f32)).collect()
+}
+
+/// The greatest speed [mm/s] of a point of the strands in the last of `seconds`, with a resting collider, and the
+/// height of their lowest point at the end [m].
+fn speed_at_rest(
+    strands: &[Vec<Vec3>],
+    material: Material,
+    shape: &ColliderShape,
+    seconds: usize,
+) -> (f64, f32) {
+    let groom = Arc::new(Groom::from_strands(strands, 40e-6));
+    let roots = roots(&groom, REST);
+    let mut simulation = Simulation::builder(groom)
+        .materials(&[material])
+        .solver(Solver { sag_free: false, ..Solver::default() })
+        .build()
+        .unwrap();
+    let obstacles = [MovingCollider::at_rest(shape.clone(), REST)];
+    let mut fastest = 0.0f64;
+    for frame in 0..60 * seconds {
+        step(&mut simulation, REST, &roots, &obstacles);
+        if frame >= 60 * (seconds - 1) {
+            fastest = fastest.max(simulation.measure(&obstacles).speed_max);
+        }
+    }
+    (fastest * 1e3, points(&simulation).iter().map(|p| p.y).fold(0.0, f32::min))
+}
+
+/// A box of 10 × 10 × 30 cm, rotated by these angles about z and x [°], and its highest place. As a hull, if wanted.
+fn edge(about_z: f32, about_x: f32, hull: bool) -> (ColliderShape, Vec3) {
+    let half = Vec3::new(0.05, 0.05, 0.15);
+    let axes = Mat3::from_euler(EulerRot::XYZ, about_x.to_radians(), 0.0, about_z.to_radians());
+    let corner = |k: usize| {
+        let side = |bit: usize| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        axes * (half * Vec3::new(side(0), side(1), side(2)))
+    };
+    let corners: Vec<Vec3> = (0..8).map(corner).collect();
+    let top = axes * Vec3::new(half.x, half.y, 0.0);
+    let shape = if hull {
+        ColliderShape::Hull(Arc::new(Hull::new(&corners).unwrap()))
+    } else {
+        ColliderShape::Cuboid { center: Vec3::ZERO, half, axes }
+    };
+    (shape, top)
+}
+
+#[test]
+fn hair_over_the_edge_of_a_box_comes_to_rest() {
+    let mut failures = Vec::new();
+    for (about_z, about_x) in [(45.0, 0.0), (15.0, 0.0), (30.0, 10.0)] {
+        for hull in [false, true] {
+            let (shape, top) = edge(about_z, about_x, hull);
+            let strands: Vec<_> = (0..5)
+                .flat_map(|k| {
+                    let k = k as f32;
+                    let beside = Vec3::Z * (0.025 * (k - 2.0));
+                    [
+                        strand(top + beside + Vec3::new(-0.06 + 0.001 * k, 0.02, 0.0), Vec3::X),
+                        strand(top + beside + Vec3::new(0.002 * k, 0.07, 0.0), Vec3::new(1.0, 0.3, 0.2)),
+                        strand(top + beside + Vec3::new(-0.01, 0.04, 0.0), Vec3::new(0.05, 1.0, 0.02 * k)),
+                    ]
+                })
+                .collect();
+            for model in Model::ALL {
+                if hull && model == Model::Springs {
+                    continue;
+                }
+                for seconds in [10, 15] {
+                    let (speed, lowest) = speed_at_rest(
+                        &strands,
+                        Material { model, ..preset("straight").unwrap() },
+                        &shape,
+                        seconds,
+                    );
+                    let what = format!(
+                        "{about_z}°, {about_x}°, hull {hull}, {model:?}: {speed:.3} mm/s in second {seconds}"
+                    );
+                    println!("{what}, the lowest point at {lowest}");
+                    if speed >= 1.0 {
+                        failures.push(what);
+                    }
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+/// A stone: the hull of 40 points near a sphere with a radius of 6 cm.
+fn stone() -> ColliderShape {
+    let corners: Vec<Vec3> = (0..40)
+        .map(|k| {
+            // Points on a sphere (Vogel 1979), each with another distance from its center.
+            let (z, turn) = (1.0 - (2 * k + 1) as f32 / 40.0, 2.399_963 * k as f32);
+            let wide = (1.0 - z * z).sqrt();
+            Vec3::new(wide * turn.cos(), z, wide * turn.sin()) * (0.06 - 0.004 * (k % 3) as f32)
+        })
+        .collect();
+    ColliderShape::Hull(Arc::new(Hull::new(&corners).unwrap()))
+}
+
+#[test]
+fn hair_over_a_stone_comes_to_rest() {
+    let strands: Vec<_> = (0..200)
+        .map(|s| {
+            let root = Vec3::new(0.0, 0.09, -0.06 + 0.0006 * s as f32);
+            let way = Vec3::new(1.0, 0.0, 0.2 * (s as f32).sin());
+            (0..30).map(|i| root + way * (0.0103 * i as f32)).collect()
+        })
+        .collect();
+    for model in Model::ALL {
+        let (speed, lowest) =
+            speed_at_rest(&strands, Material { model, ..Material::default() }, &stone(), 16);
+        println!("{model:?}: {speed:.3} mm/s at rest, the lowest point at {lowest}");
+        assert!(lowest < -0.05, "{model:?}: no hair hangs over the stone");
+        assert!(speed < 1.0, "{model:?}: {speed} mm/s");
+    }
+}
