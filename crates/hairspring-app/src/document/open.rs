@@ -126,4 +126,19 @@ mod tests {
         let why = Document::open_any("e.gif".as_ref(), None).err().unwrap().to_string();
         assert!(why.contains("e.gif") && KINDS.iter().flat_map(|k| k.1).all(|e| why.contains(e)), "{why}");
     }
+
+    #[test]
+    fn a_gltf_file_of_lines_opens_as_a_groom_and_a_mesh_as_a_body() {
+        let folder = tempfile::tempdir().unwrap();
+        let role = |name: &str, mode: u32| {
+            let path = folder.path().join(name);
+            let primitive = format!(r#"{{"mode":{mode},"attributes":{{"POSITION":0}}}}"#);
+            let text =
+                format!(r#"{{"asset":{{"version":"2.0"}},"meshes":[{{"primitives":[{primitive}]}}]}}"#);
+            std::fs::write(&path, text).unwrap();
+            Role::of(&path)
+        };
+        assert_eq!(role("lines.gltf", 3), Some(Role::Groom));
+        assert_eq!(role("mesh.gltf", 4), Some(Role::Body));
+    }
 }

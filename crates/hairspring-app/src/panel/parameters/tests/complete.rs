@@ -61,6 +61,7 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("groom.colors", "how a file is read"),
     ("groom.bones", "a file"),
     ("groom.maps", "maps are files; the panel has no file dialog for them"),
+    ("builtin.maps", "as `groom.maps`"),
     ("groom.grow.parts", "names of parts of the body's file"),
     ("groom.grow.joint", "where hair grows is said with its parts"),
     ("groom.grow.inside", "where hair grows is said with its parts"),
