@@ -188,7 +188,7 @@ fn a_scene_reads_the_lines_of_a_gltf_file() {
 }
 
 #[test]
-fn a_file_of_curves_alone_is_told_from_a_mesh() {
+fn a_file_with_curves_only_is_recognized() {
     let folder = tempfile::tempdir().unwrap();
     let holds = |name: &str, bytes: &[u8]| {
         let path = folder.path().join(name);
@@ -211,6 +211,6 @@ fn a_file_of_curves_alone_is_told_from_a_mesh() {
     assert!(!holds("broken.glb", b"glTF"));
     assert!(holds("lines.obj", b"v 0 0 0\nv 0 1 0\nl 1 2\n"));
     assert!(!holds("mesh.obj", b"v 0 0 0\nv 0 1 0\nv 1 0 0\nf 1 2 3\nl 1 2\n"));
-    assert!(!holds("hair.csv", b"0,0,0,0\n0,0,1,0\n"), "it has no mesh to be told from");
+    assert!(!holds("hair.csv", b"0,0,0,0\n0,0,1,0\n"), "the format has no meshes");
     assert!(!holds_only_curves(&folder.path().join("missing.glb")));
 }

@@ -19,7 +19,7 @@ use std::sync::Arc;
 /// Length of a segment [m].
 const SEGMENT: f32 = 0.25 / 31.0;
 
-/// A strand from `root` on along `way`.
+/// A straight strand from `root` in the direction `way`.
 fn strand(root: Vec3, way: Vec3) -> Vec<Vec3> {
     (0..32).map(|i| root + way.normalize() * (SEGMENT * i as f32)).collect()
 }
@@ -50,7 +50,8 @@ fn speed_at_rest(
     (fastest * 1e3, points(&simulation).iter().map(|p| p.y).fold(0.0, f32::min))
 }
 
-/// A box of 10 × 10 × 30 cm, rotated by these angles about z and x [°], and its highest place. As a hull, if wanted.
+/// A box of 10 × 10 × 30 cm, rotated by these angles about z and x [°], as a box or as a hull, and the middle of its
+/// upper edge.
 fn edge(about_z: f32, about_x: f32, hull: bool) -> (ColliderShape, Vec3) {
     let half = Vec3::new(0.05, 0.05, 0.15);
     let axes = Mat3::from_euler(EulerRot::XYZ, about_x.to_radians(), 0.0, about_z.to_radians());
@@ -77,11 +78,11 @@ fn hair_over_the_edge_of_a_box_comes_to_rest() {
             let strands: Vec<_> = (0..5)
                 .flat_map(|k| {
                     let k = k as f32;
-                    let beside = Vec3::Z * (0.025 * (k - 2.0));
+                    let offset = Vec3::Z * (0.025 * (k - 2.0));
                     [
-                        strand(top + beside + Vec3::new(-0.06 + 0.001 * k, 0.02, 0.0), Vec3::X),
-                        strand(top + beside + Vec3::new(0.002 * k, 0.07, 0.0), Vec3::new(1.0, 0.3, 0.2)),
-                        strand(top + beside + Vec3::new(-0.01, 0.04, 0.0), Vec3::new(0.05, 1.0, 0.02 * k)),
+                        strand(top + offset + Vec3::new(-0.06 + 0.001 * k, 0.02, 0.0), Vec3::X),
+                        strand(top + offset + Vec3::new(0.002 * k, 0.07, 0.0), Vec3::new(1.0, 0.3, 0.2)),
+                        strand(top + offset + Vec3::new(-0.01, 0.04, 0.0), Vec3::new(0.05, 1.0, 0.02 * k)),
                     ]
                 })
                 .collect();
