@@ -38,13 +38,13 @@ fn main() {
         let mut simulation = Simulation::builder(groom.clone()).materials(&[material]).build().unwrap();
         simulation.set_volume(&Volume { method: VolumeMethod::Incompressible, ..Volume::default() });
         let ball = ColliderShape::Sphere { center: Vec3::new(0.2, 0.05, 0.02), radius: 0.03 };
-        let obstacles = [MovingCollider::at_rest(ball, RigidTransform::default())];
+        let colliders = [MovingCollider::at_rest(ball, RigidTransform::default())];
         let anchor = RigidTransform::default();
         for _ in 0..10 {
             let air = Air::default();
-            simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &obstacles, air });
+            simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &colliders, air });
         }
-        let measure = simulation.measure(&obstacles);
+        let measure = simulation.measure(&colliders);
         assert_eq!((measure.non_finite, simulation.strand_count()), (0, 100));
         println!(\"{model:?}: {} points, stretch {:.4} %\", simulation.point_count(), 100.0 * measure.stretch_max);
     }

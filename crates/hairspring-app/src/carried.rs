@@ -22,7 +22,7 @@ impl Carried {
     pub fn fill(&mut self, stage: &Stage) {
         let scene = stage.scene();
         self.colliders.clear();
-        self.colliders.extend(stage.colliders().iter().map(|collider| collider.end));
+        self.colliders.extend(stage.scene_colliders().iter().map(|collider| collider.end));
         let of = |list: &mut Vec<RigidTransform>, names: &mut dyn Iterator<Item = &Option<String>>| {
             list.clear();
             list.extend(names.map(|name| stage.carried(name.as_deref())));

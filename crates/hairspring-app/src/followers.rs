@@ -42,24 +42,24 @@ impl Followers {
     }
 
     /// The data for a renderer that interpolates the hairs.
-    pub fn now<'a>(&'a self, obstacles: &'a [MovingCollider]) -> HairInterpolation<'a> {
+    pub fn now<'a>(&'a self, colliders: &'a [MovingCollider]) -> HairInterpolation<'a> {
         let Self { layout, effects, guide_transforms, guide_points, .. } = self;
-        HairInterpolation { layout, effects: *effects, guide_transforms, guide_points, obstacles }
+        HairInterpolation { layout, effects: *effects, guide_transforms, guide_points, colliders }
     }
 
     /// All points [m], computed on the first request.
-    pub fn points(&self, obstacles: &[MovingCollider]) -> &[Vec3] {
+    pub fn points(&self, colliders: &[MovingCollider]) -> &[Vec3] {
         self.placed.get_or_init(|| {
             let mut points = vec![Vec3::ZERO; self.layout.groom.points.len()];
-            self.now(obstacles).place(&mut points);
+            self.now(colliders).place(&mut points);
             points
         })
     }
 
     /// Points of every `every`-th strand [m], each starting at its index in `offsets`.
-    pub fn some_points(&self, every: usize, offsets: &[u32], obstacles: &[MovingCollider]) -> Vec<Vec3> {
+    pub fn some_points(&self, every: usize, offsets: &[u32], colliders: &[MovingCollider]) -> Vec<Vec3> {
         let mut points = vec![Vec3::ZERO; offsets.last().map_or(0, |end| *end as usize)];
-        self.now(obstacles).place_every(every, offsets, &mut points);
+        self.now(colliders).place_every(every, offsets, &mut points);
         points
     }
 }

@@ -91,7 +91,7 @@ pub fn draw(
     }
     if overlays.colliders {
         let stroke = Stroke::new(1.0, Color32::from_rgb(90, 200, 255));
-        scenery.obstacles.iter().for_each(|o| collider(pen, scenery, o, stroke));
+        scenery.colliders.iter().for_each(|o| collider(pen, scenery, o, stroke));
     }
     if overlays.roots {
         for (groom, still) in scenery.still.grooms.iter().enumerate() {
@@ -184,13 +184,13 @@ fn rose(pen: &OverlayPainter, from: Vec3, tip: Vec3, color: Color32) {
 fn collider(
     pen: &OverlayPainter,
     scenery: &StageSnapshot,
-    obstacle: &hairspring::collide::MovingCollider,
+    collider: &hairspring::collide::MovingCollider,
     stroke: Stroke,
 ) {
-    let pose = obstacle.end;
+    let pose = collider.end;
     let (m, _) = pose.matrix();
     let turned = |axes: Mat3| m * axes;
-    match &obstacle.shape {
+    match &collider.shape {
         ColliderShape::Sphere { center, radius } => pen.ball(pose.point(*center), *radius, stroke),
         ColliderShape::Capsule { a, b, radius } => {
             let (a, b) = (pose.point(*a), pose.point(*b));
@@ -264,7 +264,7 @@ fn skin(pen: &OverlayPainter, scenery: &StageSnapshot, color: Color32) {
 fn slice(pen: &OverlayPainter, scenery: &StageSnapshot, height: f32) {
     let Some((low, high)) = scenery.bounds() else { return };
     let poses: Vec<ColliderPose> = scenery
-        .obstacles
+        .colliders
         .iter()
         .map(|o| ColliderPose::new(o.shape.clone(), o.end.matrix(), o.end.matrix(), 1.0))
         .collect();

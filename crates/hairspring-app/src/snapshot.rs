@@ -113,7 +113,7 @@ pub struct StageSnapshot {
     /// The ground.
     ground: Option<Ground>,
     /// Colliders.
-    pub obstacles: Vec<MovingCollider>,
+    pub colliders: Vec<MovingCollider>,
     /// The rigid transform of the roots.
     pub anchor: RigidTransform,
     /// Stretch, depth and speed, of this moment or, while playing, of a few steps ago.
@@ -142,7 +142,7 @@ impl StageSnapshot {
             normals: Vec::new(),
             picture: Picture::default(),
             ground: None,
-            obstacles: Vec::new(),
+            colliders: Vec::new(),
             anchor: RigidTransform::default(),
             measure: Measure::default(),
             energy: Energy::default(),
@@ -187,8 +187,8 @@ impl StageSnapshot {
         }
         self.picture = stage.scene().picture;
         self.ground = Ground::of(stage.scene());
-        self.obstacles.clear();
-        self.obstacles.extend_from_slice(stage.obstacles());
+        self.colliders.clear();
+        self.colliders.extend_from_slice(stage.colliders());
         self.anchor = stage.body_anchor();
         self.volume = stage.volume();
         self.carried.fill(stage);
@@ -236,7 +236,7 @@ impl StageSnapshot {
 
     fn points_of(&self, groom: usize) -> &[Vec3] {
         match &self.followers[groom] {
-            Some(left) => left.points(&self.obstacles),
+            Some(left) => left.points(&self.colliders),
             None => &self.points[groom],
         }
     }
@@ -285,7 +285,7 @@ impl StageSnapshot {
                         colors: colors.get(g).unwrap_or(&still.colors),
                         look: &self.looks[g],
                         width_scale: sight.width,
-                        follow: left(g).map(|left| left.now(&self.obstacles)),
+                        follow: left(g).map(|left| left.now(&self.colliders)),
                     },
                 }
             })
@@ -342,7 +342,7 @@ impl Thin {
             thin.offsets.push(thin.radii.len() as u32);
         }
         thin.points = match &scenery.followers[groom] {
-            Some(left) => left.some_points(every, &thin.offsets, &scenery.obstacles),
+            Some(left) => left.some_points(every, &thin.offsets, &scenery.colliders),
             None => thin.pick(&scenery.points[groom]),
         };
         thin

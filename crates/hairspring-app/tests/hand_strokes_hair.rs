@@ -43,11 +43,11 @@ fn step(session: &mut Session, number: u64, push: Option<Push>) -> Seen {
         let stage = &now.stages[0];
         let count = stage.pushed.map_or(0, |(what, _)| what.shapes().len());
         let hand: Vec<_> =
-            stage.obstacles[stage.obstacles.len() - count..].iter().map(|o| o.end_pose()).collect();
+            stage.colliders[stage.colliders.len() - count..].iter().map(|o| o.end_pose()).collect();
         let points: Vec<Vec3> = stage.points().flatten().copied().collect();
         let deep = |p: &Vec3| hand.iter().map(|s| -s.distance(*p)).fold(0.0, f32::max);
         let depth = points.iter().map(deep).fold(0.0, f32::max);
-        return Seen { pushed: stage.pushed, points, depth, colliders: stage.obstacles.len() };
+        return Seen { pushed: stage.pushed, points, depth, colliders: stage.colliders.len() };
     }
     panic!("step {number} was not reached");
 }

@@ -159,7 +159,7 @@ impl Studio {
                 return Err(Fault::Usage(text.into()));
             }
             let card = Card::new(view.size)?;
-            stage.set_external_interpolation(card.renderer.gpu().can_place_among(stage.obstacles()));
+            stage.set_external_interpolation(card.renderer.gpu().can_place_among(stage.colliders()));
             studio.painter = Painter::Gpu(Box::new(card));
         }
         Ok(studio)

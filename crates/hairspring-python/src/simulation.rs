@@ -164,12 +164,12 @@ impl Simulation {
             }
         };
         let wind = wind.map_or(Ok(Default::default()), |wind| wind.settings())?;
-        let obstacles = self.colliders.moving(&colliders, self.time)?;
+        let colliders = self.colliders.moving(&colliders, self.time)?;
         self.forces.evaluate(py, &self.inner, self.time)?;
         let air = Air { wind, time: self.time, ..Air::default() };
         let inner = &mut self.inner;
         let report = py
-            .detach(|| inner.try_step(&StepInput { dt, anchor, roots: &roots, obstacles: &obstacles, air }));
+            .detach(|| inner.try_step(&StepInput { dt, anchor, roots: &roots, colliders: &colliders, air }));
         let report = report.map_err(setting)?;
         self.time += f64::from(dt);
         py.check_signals()?;

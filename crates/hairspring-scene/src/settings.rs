@@ -134,7 +134,7 @@ impl Shape {
     }
 
     /// Returns the collider shape; `None` for a hull whose points span no volume.
-    pub fn obstacle(&self) -> Option<ColliderShape> {
+    pub fn collider_shape(&self) -> Option<ColliderShape> {
         Some(match *self {
             Self::Sphere { center, radius } => ColliderShape::Sphere { center, radius },
             Self::Capsule { a, b, radius } => ColliderShape::Capsule { a, b, radius },
@@ -159,7 +159,8 @@ impl Validate for Shape {
         if let Self::Hull { points, file, .. } = self {
             let few = points.len() <= Self::MAX_POINTS;
             let finite = few && points.iter().all(|p| p.is_finite());
-            let spans = if file.is_some() { points.is_empty() } else { finite && self.obstacle().is_some() };
+            let spans =
+                if file.is_some() { points.is_empty() } else { finite && self.collider_shape().is_some() };
             checks.push(check(
                 spans,
                 "hull",

@@ -58,7 +58,7 @@ pub fn step_by(
     colliders: &[MovingCollider],
 ) -> StepReport {
     let air = Air::default();
-    let report = simulation.step(&StepInput { dt, anchor: head, roots, obstacles: colliders, air });
+    let report = simulation.step(&StepInput { dt, anchor: head, roots, colliders, air });
     assert_eq!(report.reset_strands, 0, "strands became non-finite and were reset");
     report
 }

@@ -96,7 +96,7 @@ pub struct Bench {
     pub wind: Wind,
     roots: Vec<Vec3>,
     poses: Vec<RigidTransform>,
-    obstacle: MovingCollider,
+    collider: MovingCollider,
     frame: u32,
 }
 
@@ -154,7 +154,7 @@ impl Bench {
                 .map(|p| RigidTransform { translation: *p, ..RigidTransform::default() })
                 .collect(),
             roots,
-            obstacle: MovingCollider::at_rest(shape, RigidTransform::default()),
+            collider: MovingCollider::at_rest(shape, RigidTransform::default()),
             frame: 0,
         }
     }
@@ -170,19 +170,19 @@ impl Bench {
         for (pose, root) in self.poses.iter_mut().zip(&self.roots) {
             pose.translation = end.point(*root);
         }
-        self.obstacle = MovingCollider { start, end, ..self.obstacle.clone() };
+        self.collider = MovingCollider { start, end, ..self.collider.clone() };
         self.simulation.step(&StepInput {
             dt: FRAME,
             anchor: end,
             roots: &self.poses,
-            obstacles: std::slice::from_ref(&self.obstacle),
+            colliders: std::slice::from_ref(&self.collider),
             air: Air { wind: self.wind, time: f64::from(self.frame - 1) / 60.0, ..Air::default() },
         })
     }
 
     /// Returns the measurements at the end of the last frame.
     pub fn measure(&self) -> Measure {
-        self.simulation.measure(std::slice::from_ref(&self.obstacle))
+        self.simulation.measure(std::slice::from_ref(&self.collider))
     }
 }
 

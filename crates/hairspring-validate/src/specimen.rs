@@ -67,7 +67,7 @@ pub struct Setup {
     /// Gravity [m/s²].
     pub gravity: DVec3,
     /// Optional collider.
-    pub obstacle: Option<ColliderShape>,
+    pub collider: Option<ColliderShape>,
     /// Velocity of the air [m/s].
     pub wind: DVec3,
     /// Whether `points` are in balance under gravity, as those of a groom, instead of a natural shape.
@@ -81,7 +81,7 @@ impl Setup {
             points,
             material: Material { radius: Some(RADIUS as f32), density: DENSITY as f32, ..material },
             gravity: DVec3::NEG_Y * GRAVITY,
-            obstacle: None,
+            collider: None,
             wind: DVec3::ZERO,
             in_balance: false,
         }
@@ -163,7 +163,7 @@ pub const FOLLICLE: f64 = 1e-3;
 pub struct Specimen {
     simulation: Simulation,
     root: RigidTransform,
-    obstacles: Vec<MovingCollider>,
+    colliders: Vec<MovingCollider>,
     wind: Vec3,
     substep: f64,
     at: Vec<Vec3>,
@@ -184,13 +184,13 @@ impl Specimen {
         };
         let material = Material { model: method.model, ..setup.material };
         let rest = (Mat3::IDENTITY, Vec3::ZERO);
-        let obstacles: Vec<MovingCollider> = setup
-            .obstacle
+        let colliders: Vec<MovingCollider> = setup
+            .collider
             .into_iter()
             .map(|shape| MovingCollider::at_rest(shape, RigidTransform::default()))
             .collect();
         let poses: Vec<ColliderPose> =
-            obstacles.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();
+            colliders.iter().map(|o| ColliderPose::new(o.shape.clone(), rest, rest, 1.0)).collect();
         let gravity = setup.gravity.as_vec3();
         let simulation = Simulation::builder(groom)
             .strands(&[0])
@@ -202,7 +202,7 @@ impl Specimen {
             .unwrap();
         debug_assert_eq!(simulation.point_count(), count);
         let (wind, substep) = (setup.wind.as_vec3(), FRAME / method.substeps as f64);
-        Self { simulation, root, obstacles, wind, substep, at }
+        Self { simulation, root, colliders, wind, substep, at }
     }
 
     /// Length of a substep [s].
@@ -222,12 +222,12 @@ impl Specimen {
 
     /// Speed of the fastest point [m/s].
     pub fn fastest(&self) -> f64 {
-        self.simulation.measure(&self.obstacles).speed_max
+        self.simulation.measure(&self.colliders).speed_max
     }
 
     /// Contact force of the collider on the strand [N].
     pub fn contact_force(&self) -> f64 {
-        self.simulation.contacts(&self.obstacles).force
+        self.simulation.contacts(&self.colliders).force
     }
 
     /// Holds or loads these points from now on, and releases all others.
@@ -257,7 +257,7 @@ impl Specimen {
             dt: dt as f32,
             anchor: RigidTransform::default(),
             roots: &[self.root],
-            obstacles: &self.obstacles,
+            colliders: &self.colliders,
             air: Air { wind: Wind { velocity: self.wind, ..Wind::default() }, ..Air::default() },
         });
         if report.reset_strands > 0 {

@@ -165,7 +165,7 @@ impl Swing {
             dt: self.step,
             anchor: RigidTransform::default(),
             roots: &self.roots,
-            obstacles: &[],
+            colliders: &[],
             air: Air::default(),
         })
     }

@@ -135,7 +135,7 @@ fn wind_and_charge_allocate_nothing() {
                 dt: bench::FRAME,
                 anchor: REST,
                 roots: &roots,
-                obstacles: &[],
+                colliders: &[],
                 air: Air {
                     wind: Wind { velocity: Vec3::X, gust: 0.5, gust_rate: 1.0 },
                     time: f64::from(frame as f32 * bench::FRAME),

@@ -44,18 +44,18 @@ pub fn main() {
     let solver = hairspring::settings::Solver { sag_free: false, ..Default::default() };
     let mut simulation = Simulation::builder(groom).solver(solver).build().expect("the groom is valid");
     let torus = ColliderShape::custom(Torus { major: 0.1, minor: 0.02 });
-    let obstacles = [MovingCollider::at_rest(torus, RigidTransform::default())];
+    let colliders = [MovingCollider::at_rest(torus, RigidTransform::default())];
     let anchor = RigidTransform::default();
     for _ in 0..120 {
         simulation.step(&StepInput {
             dt: 1.0 / 60.0,
             anchor,
             roots: &roots,
-            obstacles: &obstacles,
+            colliders: &colliders,
             air: Air::default(),
         });
     }
-    let (found, measure) = (simulation.contacts(&obstacles), simulation.measure(&obstacles));
+    let (found, measure) = (simulation.contacts(&colliders), simulation.measure(&colliders));
     let contacts = found.points + found.segments;
     println!(
         "{contacts} points and segments touch the torus, {:.3} mm deep at most",

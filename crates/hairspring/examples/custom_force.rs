@@ -45,7 +45,7 @@ pub fn main() {
             dt: 1.0 / 60.0,
             anchor,
             roots: &roots,
-            obstacles: &[],
+            colliders: &[],
             air: Air::default(),
         });
         let mut points = [Vec3::ZERO; 16];

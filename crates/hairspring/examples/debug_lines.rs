@@ -24,10 +24,10 @@ pub fn main() {
     let mut simulation = Simulation::builder(groom).solver(solver).build().expect("the groom is valid");
     let ball = ColliderShape::Sphere { center: Vec3::new(0.05, -0.02, 0.02), radius: 0.05 };
     // The engine's entity, which contacts report.
-    let obstacles = [MovingCollider::at_rest(ball, RigidTransform::default()).with_user_data(42)];
+    let colliders = [MovingCollider::at_rest(ball, RigidTransform::default()).with_user_data(42)];
     let anchor = RigidTransform::default();
     let input =
-        StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &obstacles, air: Air::default() };
+        StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &colliders, air: Air::default() };
     for _ in 0..60 {
         simulation.try_step(&input).expect("the input is finite");
     }
@@ -39,5 +39,5 @@ pub fn main() {
         println!("{count} lines of {kind:?}, in the color {:?}", kind.color());
         assert!(count > 0);
     }
-    assert!(simulation.contact_points(&obstacles).iter().all(|contact| contact.user_data == 42));
+    assert!(simulation.contact_points(&colliders).iter().all(|contact| contact.user_data == 42));
 }

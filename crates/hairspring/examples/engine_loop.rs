@@ -38,7 +38,7 @@ pub fn main() {
             dt: 1.0 / 60.0,
             anchor: next,
             roots: &roots,
-            obstacles: &[MovingCollider::new(ball, pose, next)],
+            colliders: &[MovingCollider::new(ball, pose, next)],
             air: Air::default(),
         });
         assert_eq!(report.reset_strands, 0);

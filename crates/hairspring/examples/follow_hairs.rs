@@ -43,7 +43,7 @@ pub fn main() {
             dt: 1.0 / 60.0,
             anchor,
             roots: &roots,
-            obstacles: &[],
+            colliders: &[],
             air: Air::default(),
         });
         simulation.write_points(&mut of_guides);

@@ -40,7 +40,7 @@ pub fn main() {
                 dt: 1.0 / 60.0,
                 anchor,
                 roots: &roots,
-                obstacles: &[],
+                colliders: &[],
                 air: Air::default(),
             });
         }

@@ -37,13 +37,13 @@ pub fn main() {
     let solver = Solver { sag_free: false, ..Solver::default() };
     let mut simulation = Simulation::builder(groom).solver(solver).build().expect("the groom is valid");
     let shape = ColliderShape::Field(Arc::new(field));
-    let obstacles = [MovingCollider::at_rest(shape, RigidTransform::default())];
+    let colliders = [MovingCollider::at_rest(shape, RigidTransform::default())];
     let anchor = RigidTransform::default();
     for _ in 0..120 {
         let air = Air::default();
-        simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &obstacles, air });
+        simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &colliders, air });
     }
-    let (found, measure) = (simulation.contacts(&obstacles), simulation.measure(&obstacles));
+    let (found, measure) = (simulation.contacts(&colliders), simulation.measure(&colliders));
     let contacts = found.points + found.segments;
     println!("{contacts} points and segments lie on the box, {:.3} mm deep at most", 1e3 * measure.max_depth);
     assert!(contacts > 0 && measure.max_depth < 1e-4);

@@ -20,7 +20,7 @@ pub fn main() {
             let wind = Wind { velocity: Vec3::X * wind, ..Wind::default() };
             let air = Air { wind, ..Air::default() };
             let anchor = RigidTransform::default();
-            simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &[], air });
+            simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &[], air });
         }
         let mut points = [Vec3::ZERO; 16];
         simulation.write_points(&mut points);

@@ -17,7 +17,7 @@
 //!         dt: 1.0 / 60.0,
 //!         anchor: pose,
 //!         roots: &[pose],
-//!         obstacles: &[],
+//!         colliders: &[],
 //!         air: Air::default(),
 //!     });
 //! }

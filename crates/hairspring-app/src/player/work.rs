@@ -370,7 +370,7 @@ fn body(stages: &[(Stage, Arc<Still>)]) -> Option<PosedBody<'_>> {
 
 fn open(scene: Scene, card: Option<&Gpu>) -> Result<(Stage, Arc<Still>), AppError> {
     let mut stage = Stage::new(scene)?;
-    stage.set_external_interpolation(card.is_none_or(|card| card.can_place_among(stage.obstacles())));
+    stage.set_external_interpolation(card.is_none_or(|card| card.can_place_among(stage.colliders())));
     let still = Arc::new(Still::new(&stage));
     Ok((stage, still))
 }

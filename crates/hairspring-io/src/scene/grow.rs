@@ -43,7 +43,7 @@ impl Reader<'_> {
             }
         }
         if let Some(shape) = &file.inside {
-            let shape = self.shape(shape, near)?.obstacle();
+            let shape = self.shape(shape, near)?.collider_shape();
             let inside = |p: Vec3| shape.as_ref().is_some_and(|s| s.distance(p) < 0.0);
             for (t, allowed) in allowed.iter_mut().enumerate() {
                 *allowed &= inside(mesh.corners(t).iter().sum::<Vec3>() / 3.0);

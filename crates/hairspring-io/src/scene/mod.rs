@@ -171,7 +171,7 @@ impl<'a> Reader<'a> {
         }
         self.note(&path, notes);
         let shape = Shape::Hull { points, file: None, scale: None };
-        if shape.obstacle().is_none() {
+        if shape.collider_shape().is_none() {
             let text = format!("the vertices of {} span no volume", path.display());
             return Err(self.wrong(near, "shape", text));
         }

@@ -187,7 +187,9 @@ fn a_hull_of_many_vertices_is_made_of_the_outermost() {
     let loaded = read_scene(&scene).unwrap();
     assert!(loaded.notes.iter().any(|n| n.contains("the hull of its 20000 vertices")), "{:?}", loaded.notes);
     let shape = &loaded.value.colliders[0].shape;
-    let hairspring::collide::ColliderShape::Hull(hull) = shape.obstacle().unwrap() else { panic!("no hull") };
+    let hairspring::collide::ColliderShape::Hull(hull) = shape.collider_shape().unwrap() else {
+        panic!("no hull")
+    };
     let deepest = hull.planes().map(|(_, offset)| offset).fold(f32::MAX, f32::min);
     assert!(deepest > 0.995, "a face of the hull is {deepest} of the radius from the center");
     assert!(start.elapsed() < ENOUGH, "took {:?}", start.elapsed());

@@ -52,7 +52,7 @@ fn a_prop_and_everything_attached_move_by_its_keys() {
         for (now, before) in roots(&stage, 0).iter().zip(&before[0]) {
             assert!((now.y - before.y).abs() < 0.5, "{motion}: hair of the head, {now} of {before}");
         }
-        let ball = stage.obstacles().last().unwrap();
+        let ball = stage.colliders().last().unwrap();
         assert!(
             ball.end.translation.distance(up) < 1e-5,
             "{motion}: the ball is at {}",
@@ -103,7 +103,7 @@ fn a_prop_rides_on_the_joint_that_it_names() {
                     "{motion}: {now} of {rest}, frame {frame}"
                 );
             }
-            let ball = stage.obstacles().last().unwrap().end;
+            let ball = stage.colliders().last().unwrap().end;
             assert!(ball.translation.distance(root.point(own)) < 1e-4, "{motion}: the ball is at {ball:?}");
         }
         assert_eq!(turned > 0.1, !motion.is_empty(), "{motion}: the body moves by {turned}");

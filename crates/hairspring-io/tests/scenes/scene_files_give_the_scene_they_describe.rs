@@ -96,7 +96,7 @@ fn scene_files_give_the_scene_they_describe() {
     let floor = Shape::Plane { point: Vec3::NEG_Y, normal: Vec3::Y * 2.0 };
     assert_eq!(scene.colliders[1].shape, floor);
     // The box is rotated by 90° about Y, so its edge of 0.6 m lies along x.
-    let shelf = scene.colliders[2].shape.obstacle().unwrap();
+    let shelf = scene.colliders[2].shape.collider_shape().unwrap();
     for (at, distance) in [(Vec3::new(0.31, 1.0, 0.0), 0.01), (Vec3::new(0.0, 1.0, 0.09), -0.01)] {
         assert!((shelf.distance(at) - distance).abs() < 1e-6, "{} at {at}", shelf.distance(at));
     }
@@ -315,7 +315,7 @@ fn hulls_and_sheets_are_read_from_meshes_or_refused() {
     let scene = read(folder.path(), text).unwrap().value;
     assert_eq!(scene.colliders.len(), 2);
     for (collider, size) in scene.colliders.iter().zip([0.5, 1.0]) {
-        let hull = collider.shape.obstacle().unwrap();
+        let hull = collider.shape.collider_shape().unwrap();
         let (slope, corner) = (hull.distance(Vec3::splat(size)), hull.distance(Vec3::Y * (2.0 * size)));
         assert!((slope - 2.0 * size / 3f32.sqrt()).abs() < 1e-5 && (corner - size).abs() < 1e-5);
     }

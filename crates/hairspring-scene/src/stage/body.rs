@@ -30,7 +30,7 @@ pub(super) struct StagedBody {
     pose: BodyPose,
     /// Colliders in this order: those made of meshes, the scene's colliders, its charged bodies, the user's
     /// colliders.
-    obstacles: Vec<MovingCollider>,
+    colliders: Vec<MovingCollider>,
     /// What moves each collider of the first two kinds.
     carriers: Vec<Carrier>,
     /// Number of colliders of the first kind.
@@ -49,8 +49,8 @@ pub(super) struct StagedBody {
 
 /// A collider that pushes hair out before the scene begins.
 pub(super) struct InitialPush {
-    /// Its index among the obstacles.
-    pub(super) obstacle: usize,
+    /// Its index among the colliders.
+    pub(super) collider: usize,
     /// Its shape; `None` for a sheet.
     pub(super) shape: Option<Shape>,
 }
@@ -72,7 +72,7 @@ struct Deforming {
     mesh: Mesh,
     /// The remaining mesh, if rigid parts of it are separate colliders.
     rest: Option<Body>,
-    obstacle: usize,
+    collider: usize,
 }
 
 impl Deforming {
@@ -106,7 +106,7 @@ impl StagedBody {
     pub(super) fn new(scene: &Scene, joints: &Joints, cache: Option<VertexCache>) -> Self {
         let mut staged = Self {
             pose: BodyPose::new(scene, cache),
-            obstacles: Vec::new(),
+            colliders: Vec::new(),
             carriers: Vec::new(),
             meshes: 0,
             surfaces: Vec::new(),
@@ -119,11 +119,11 @@ impl StagedBody {
         staged.add_surface(scene);
         for (k, sheet) in scene.sheets.iter().enumerate() {
             if sheet.initial == InitialContact::Push {
-                staged.initial_pushes.push(InitialPush { obstacle: staged.obstacles.len(), shape: None });
+                staged.initial_pushes.push(InitialPush { collider: staged.colliders.len(), shape: None });
             }
             staged.add_mesh(scene, Mesh::Sheet(k), SurfaceKind::Sheet(sheet.thickness));
         }
-        staged.meshes = staged.obstacles.len();
+        staged.meshes = staged.colliders.len();
         staged.rebuild_surfaces(scene, None);
         staged.add_colliders(&scene.colliders, joints);
         staged.add_charged(scene, joints);
@@ -135,11 +135,11 @@ impl StagedBody {
     /// Sets the start pose of all colliders to their end pose, so that they have no velocity.
     fn stand_still(&mut self) {
         self.charged.rest();
-        self.obstacles.iter_mut().for_each(|obstacle| obstacle.start = obstacle.end);
+        self.colliders.iter_mut().for_each(|collider| collider.start = collider.end);
     }
 
     fn add(&mut self, shape: ColliderShape, carrier: Carrier) {
-        self.obstacles.push(MovingCollider::at_rest(shape, RigidTransform::default()));
+        self.colliders.push(MovingCollider::at_rest(shape, RigidTransform::default()));
         self.carriers.push(carrier);
     }
 
@@ -148,10 +148,10 @@ impl StagedBody {
         for (collider, joint) in colliders.iter().zip(&joints.colliders) {
             let carrier = joint.map_or(self.carrier(self.pose.anchor_joint()), Carrier::Joint);
             // A hull whose points span no volume is ignored.
-            let Some(shape) = collider.shape.obstacle() else { continue };
+            let Some(shape) = collider.shape.collider_shape() else { continue };
             if collider.initial == InitialContact::Push {
-                let (obstacle, shape) = (self.obstacles.len(), Some(collider.shape.clone()));
-                self.initial_pushes.push(InitialPush { obstacle, shape });
+                let (collider, shape) = (self.colliders.len(), Some(collider.shape.clone()));
+                self.initial_pushes.push(InitialPush { collider, shape });
             }
             self.add(shape, carrier);
         }
@@ -161,24 +161,24 @@ impl StagedBody {
     /// by themselves.
     fn add_charged(&mut self, scene: &Scene, joints: &Joints) {
         self.charged = StagedCharged::new(&scene.charged, joints.charged.clone());
-        self.obstacles.extend(self.charged.obstacles(&scene.charged));
+        self.colliders.extend(self.charged.colliders(&scene.charged));
     }
 
     /// Replaces the colliders and charged bodies at `time` [s] while the scene is running. The new ones start
     /// without velocity.
     pub(super) fn update_settings(&mut self, scene: &Scene, joints: &Joints, time: f64) {
-        let pushed = self.obstacles.split_off(self.obstacles.len() - self.pushed.0);
-        self.obstacles.truncate(self.meshes);
+        let pushed = self.colliders.split_off(self.colliders.len() - self.pushed.0);
+        self.colliders.truncate(self.meshes);
         self.carriers.truncate(self.meshes);
-        self.initial_pushes.retain(|push| push.obstacle < self.meshes);
+        self.initial_pushes.retain(|push| push.collider < self.meshes);
         self.add_colliders(&scene.colliders, joints);
         self.add_charged(scene, joints);
         self.repose(scene, time);
         self.charged.rest();
-        for obstacle in &mut self.obstacles[self.meshes..] {
-            obstacle.start = obstacle.end;
+        for collider in &mut self.colliders[self.meshes..] {
+            collider.start = collider.end;
         }
-        self.obstacles.extend(pushed);
+        self.colliders.extend(pushed);
     }
 
     /// See [`super::Stage::set_user_colliders`].
@@ -187,13 +187,13 @@ impl StagedBody {
         shapes: impl Iterator<Item = &'a ColliderShape> + Clone,
         pose: RigidTransform,
     ) {
-        let (count, first) = (shapes.clone().count(), self.obstacles.len() - self.pushed.0);
+        let (count, first) = (shapes.clone().count(), self.colliders.len() - self.pushed.0);
         if count == self.pushed.0 {
             // The same shapes, perhaps of another size, keep their motion.
-            self.obstacles[first..].iter_mut().zip(shapes).for_each(|(o, shape)| o.shape.clone_from(shape));
+            self.colliders[first..].iter_mut().zip(shapes).for_each(|(o, shape)| o.shape.clone_from(shape));
         } else {
-            self.obstacles.truncate(first);
-            self.obstacles.extend(shapes.map(|shape| MovingCollider::at_rest(shape.clone(), pose)));
+            self.colliders.truncate(first);
+            self.colliders.extend(shapes.map(|shape| MovingCollider::at_rest(shape.clone(), pose)));
         }
         self.pushed = (count, pose);
     }
@@ -237,8 +237,8 @@ impl StagedBody {
         };
         let surface = Surface::new(making, &rest);
         let rest = (!pieces.is_empty()).then_some(rest);
-        let obstacle = self.obstacles.len();
-        self.surfaces.push(Deforming { surface, mesh, rest, obstacle });
+        let collider = self.colliders.len();
+        self.surfaces.push(Deforming { surface, mesh, rest, collider });
         self.add(making.nothing(), Carrier::Anchor);
         for piece in pieces {
             self.add(making.rigid(&piece.body, None), Carrier::Joint(piece.joint));
@@ -272,11 +272,11 @@ impl StagedBody {
             }));
         }
         poses.push(self.pose.current().clone());
-        for (Deforming { surface, mesh, rest, obstacle }, share) in self.surfaces.iter_mut().zip(shares) {
+        for (Deforming { surface, mesh, rest, collider }, share) in self.surfaces.iter_mut().zip(shares) {
             let Some(body) = Deforming::body(rest, *mesh, scene) else { continue };
             let every = poses.len() / share;
             let poses = poses.iter().skip(every - 1).step_by(every);
-            surface.update(&mut self.obstacles[*obstacle].shape, body, poses, within, since.is_none());
+            surface.update(&mut self.colliders[*collider].shape, body, poses, within, since.is_none());
         }
     }
 
@@ -299,17 +299,17 @@ impl StagedBody {
         let cut = self.pose.cut(scene, times);
         let by = |joint: usize| cut.get(joint).copied().flatten();
         let anchor = self.pose.anchor_joint();
-        for (obstacle, carrier) in self.obstacles.iter_mut().zip(&self.carriers) {
+        for (collider, carrier) in self.colliders.iter_mut().zip(&self.carriers) {
             let joint = match *carrier {
                 Carrier::Fixed => None,
                 Carrier::Joint(joint) => Some(joint),
                 Carrier::Anchor => Some(anchor),
             };
             if let Some(by) = joint.and_then(by) {
-                obstacle.start = by.after(&obstacle.start);
+                collider.start = by.after(&collider.start);
             }
         }
-        self.charged.cut(&scene.charged, by, &mut self.obstacles[self.carriers.len()..]);
+        self.charged.cut(&scene.charged, by, &mut self.colliders[self.carriers.len()..]);
         by(anchor)
     }
 
@@ -325,17 +325,17 @@ impl StagedBody {
     /// of the user colliders.
     fn repose(&mut self, scene: &Scene, time: f64) {
         let anchor = self.pose.anchor();
-        let Self { pose: body, obstacles, carriers, charged, pushed: (count, pose), .. } = self;
+        let Self { pose: body, colliders, carriers, charged, pushed: (count, pose), .. } = self;
         let carried = |joint: Option<usize>| body.carried(joint);
-        for (obstacle, carrier) in obstacles.iter_mut().zip(&*carriers) {
-            obstacle.end = match *carrier {
+        for (collider, carrier) in colliders.iter_mut().zip(&*carriers) {
+            collider.end = match *carrier {
                 Carrier::Fixed => RigidTransform::default(),
                 Carrier::Joint(j) => carried(Some(j)),
                 Carrier::Anchor => anchor,
             };
         }
-        charged.advance(&scene.charged, time, carried, &mut obstacles[carriers.len()..]);
-        obstacles.iter_mut().rev().take(*count).for_each(|pushed| pushed.end = *pose);
+        charged.advance(&scene.charged, time, carried, &mut colliders[carriers.len()..]);
+        colliders.iter_mut().rev().take(*count).for_each(|pushed| pushed.end = *pose);
     }
 
     /// Returns a report if parts of the collision mesh are too thin for its field.
@@ -349,13 +349,13 @@ impl StagedBody {
     }
 
     /// Returns the colliders with their motion in the last frame.
-    pub(super) fn obstacles(&self) -> &[MovingCollider] {
-        &self.obstacles
+    pub(super) fn colliders(&self) -> &[MovingCollider] {
+        &self.colliders
     }
 
     /// Returns the colliders listed in the scene.
-    pub(super) fn colliders(&self) -> &[MovingCollider] {
-        &self.obstacles[self.meshes..self.carriers.len()]
+    pub(super) fn scene_colliders(&self) -> &[MovingCollider] {
+        &self.colliders[self.meshes..self.carriers.len()]
     }
 
     /// Returns the colliders that push hair out before the scene begins.
@@ -365,21 +365,21 @@ impl StagedBody {
 
     /// Returns the current poses of the colliders in which hair may stay as deep as it is authored.
     pub(super) fn keeping_poses(&self) -> Vec<ColliderPose> {
-        let pushes = |k: usize| self.initial_pushes.iter().any(|push| push.obstacle == k);
-        let keeping = self.obstacles.iter().enumerate().filter(|(k, _)| !pushes(*k));
-        keeping.map(|(_, obstacle)| obstacle.end_pose()).collect()
+        let pushes = |k: usize| self.initial_pushes.iter().any(|push| push.collider == k);
+        let keeping = self.colliders.iter().enumerate().filter(|(k, _)| !pushes(*k));
+        keeping.map(|(_, collider)| collider.end_pose()).collect()
     }
 
     /// Returns the colliders of the scene's sheets and those listed in the scene, without the body's meshes.
     pub(super) fn sheets_and_colliders(&self) -> Vec<MovingCollider> {
-        let meshes = self.obstacles[..self.meshes].iter();
-        let sheets = meshes.filter(|obstacle| matches!(obstacle.shape, ColliderShape::Sheet(_)));
-        sheets.chain(self.colliders()).cloned().collect()
+        let meshes = self.colliders[..self.meshes].iter();
+        let sheets = meshes.filter(|collider| matches!(collider.shape, ColliderShape::Sheet(_)));
+        sheets.chain(self.scene_colliders()).cloned().collect()
     }
 
     /// Returns the current poses of the colliders.
     pub(super) fn poses(&self) -> Vec<ColliderPose> {
-        self.obstacles.iter().map(MovingCollider::end_pose).collect()
+        self.colliders.iter().map(MovingCollider::end_pose).collect()
     }
 
     /// Returns the posed body.

@@ -27,7 +27,7 @@ impl StagedCharged {
     }
 
     /// Returns colliders for the solid ones, in order.
-    pub(super) fn obstacles(&self, settings: &[Charged]) -> Vec<MovingCollider> {
+    pub(super) fn colliders(&self, settings: &[Charged]) -> Vec<MovingCollider> {
         let solid = settings.iter().filter(|c| c.solid);
         let ball = |c: &Charged| {
             let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: c.radius };
@@ -43,42 +43,42 @@ impl StagedCharged {
         }
     }
 
-    /// Moves the start of balls on joints that have a cut, and the `obstacles` of the solid ones, across the
+    /// Moves the start of balls on joints that have a cut, and the `colliders` of the solid ones, across the
     /// cut. `by` returns the rigid motion of a joint due to the cut.
     pub(super) fn cut(
         &mut self,
         settings: &[Charged],
         by: impl Fn(usize) -> Option<RigidTransform>,
-        obstacles: &mut [MovingCollider],
+        colliders: &mut [MovingCollider],
     ) {
-        let mut obstacles = obstacles.iter_mut();
+        let mut colliders = colliders.iter_mut();
         for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
-            let obstacle = if charged.solid { obstacles.next() } else { None };
+            let collider = if charged.solid { colliders.next() } else { None };
             let Some(by) = joint.and_then(&by) else { continue };
             ball.centers[0] = by.point(ball.centers[0]);
-            if let Some(obstacle) = obstacle {
-                obstacle.start = by.after(&obstacle.start);
+            if let Some(collider) = collider {
+                collider.start = by.after(&collider.start);
             }
         }
     }
 
-    /// Updates the end positions for a frame that ends at `time` [s], and those of the `obstacles` of solid
+    /// Updates the end positions for a frame that ends at `time` [s], and those of the `colliders` of solid
     /// ones. `carried` returns the motion of a joint since rest.
     pub(super) fn advance(
         &mut self,
         settings: &[Charged],
         time: f64,
         carried: impl Fn(Option<usize>) -> RigidTransform,
-        obstacles: &mut [MovingCollider],
+        colliders: &mut [MovingCollider],
     ) {
-        let mut obstacles = obstacles.iter_mut();
+        let mut colliders = colliders.iter_mut();
         for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
             let pose = carried(*joint);
             ball.centers[1] = pose.point(charged.center(time));
             if charged.solid
-                && let Some(obstacle) = obstacles.next()
+                && let Some(collider) = colliders.next()
             {
-                obstacle.end = RigidTransform { translation: ball.centers[1], ..pose };
+                collider.end = RigidTransform { translation: ball.centers[1], ..pose };
             }
         }
     }

@@ -44,11 +44,11 @@ impl Stage {
 
     /// Returns the current contacts with colliders, and the number of points for which one was evaluated.
     pub fn contacts(&self) -> Contacts {
-        self.simulation.contacts(self.body.obstacles())
+        self.simulation.contacts(self.body.colliders())
     }
 
     /// Returns measurements over all simulated strands at the end of the last step.
     pub fn measure(&self) -> Measure {
-        self.simulation.measure(self.body.obstacles())
+        self.simulation.measure(self.body.colliders())
     }
 }

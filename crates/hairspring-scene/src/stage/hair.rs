@@ -137,13 +137,13 @@ impl StagedHair {
     /// See [`super::Stage::place_follow_hairs`].
     pub(super) fn place_followers(&mut self, body: &StagedBody) {
         if let Some(follow) = &self.follow {
-            follow.interpolation(&self.guide_points, body.obstacles()).place(&mut self.points);
+            follow.interpolation(&self.guide_points, body.colliders()).place(&mut self.points);
         }
     }
 
     /// Returns the data that places the follow hairs in the current frame, if there are any.
     fn followed<'a>(&'a self, body: &'a StagedBody) -> Option<HairInterpolation<'a>> {
-        Some(self.follow.as_ref()?.interpolation(&self.guide_points, body.obstacles()))
+        Some(self.follow.as_ref()?.interpolation(&self.guide_points, body.colliders()))
     }
 
     /// Calls `look` with the current points of each strand, in parallel. This includes follow hairs that the
@@ -266,14 +266,14 @@ impl StagedHair {
         std::iter::repeat_n(hairs, self.strands.len())
     }
 
-    /// Makes the current state of the hair in `simulation` its groom, with colliders at `obstacles`. Styling
+    /// Makes the current state of the hair in `simulation` its groom, with colliders at `colliders`. Styling
     /// of follow hairs is not included.
-    pub(super) fn rest_as(&mut self, simulation: &Simulation, body: &StagedBody, obstacles: &[ColliderPose]) {
+    pub(super) fn rest_as(&mut self, simulation: &Simulation, body: &StagedBody, colliders: &[ColliderPose]) {
         let effects = self.follow.as_mut().map(|follow| follow.set_effects(Effects::default()));
         self.show(simulation, body);
         let groom = Arc::new(Groom { points: self.points.clone(), ..(*self.groom).clone() });
         if let (Some(follow), Some(effects)) = (&mut self.follow, effects) {
-            *follow = follow.with_rest_pose(groom.clone(), obstacles);
+            *follow = follow.with_rest_pose(groom.clone(), colliders);
             follow.set_effects(effects);
         }
         self.groom = groom;

@@ -43,14 +43,14 @@ pub(super) enum Motion {
 
 /// Returns the motion of each of the body's pushing colliders.
 pub(super) fn motions(hair: &[StagedHair], body: &StagedBody) -> Vec<Motion> {
-    let obstacle = |push: &super::body::InitialPush| &body.obstacles()[push.obstacle];
+    let collider = |push: &super::body::InitialPush| &body.colliders()[push.collider];
     let strands = || hair.iter().flat_map(StagedHair::authored_points);
     let motion = |push| {
-        let (obstacle, shape) = (obstacle(push), &push.shape);
-        match (&obstacle.shape, shape) {
-            (ColliderShape::Sheet(sheet), _) => shrink(sheet, &obstacle.end, strands()),
+        let (collider, shape) = (collider(push), &push.shape);
+        match (&collider.shape, shape) {
+            (ColliderShape::Sheet(sheet), _) => shrink(sheet, &collider.end, strands()),
             (_, Some(shape)) => {
-                let pose = obstacle.end_pose();
+                let pose = collider.end_pose();
                 let depth = strands().flatten().map(|p| -pose.distance(*p)).fold(0.0, f32::max);
                 if depth > 0.0 { Motion::Grow(shape.clone(), depth) } else { Motion::Stay }
             }
@@ -102,7 +102,7 @@ impl Motion {
         match self {
             Self::Stay => {}
             Self::Grow(own, depth) => {
-                if let Some(grown) = own.shrunk(depth * (1.0 - to)).obstacle() {
+                if let Some(grown) = own.shrunk(depth * (1.0 - to)).collider_shape() {
                     *shape = grown;
                 }
             }

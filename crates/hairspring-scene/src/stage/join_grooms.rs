@@ -9,13 +9,13 @@ use hairspring::{
 use std::sync::Arc;
 
 /// Creates the simulation of all of `hair` at rest, groom after groom. Settings are the scene's, except for
-/// the solver's. The anchor is at `anchor`, and colliders are at `obstacles`.
+/// the solver's. The anchor is at `anchor`, and colliders are at `colliders`.
 pub(super) fn simulation(
     hair: &[StagedHair],
     scene: &Scene,
     solver: Solver,
     anchor: RigidTransform,
-    obstacles: &[ColliderPose],
+    colliders: &[ColliderPose],
 ) -> Simulation {
     let (groom, materials) = (join(hair), materials(hair));
     let strands: Vec<u32> = (0..groom.strand_count() as u32).collect();
@@ -25,11 +25,11 @@ pub(super) fn simulation(
         .solver(solver)
         .gravity(scene.gravity)
         .anchor(anchor)
-        .colliders_at_rest(obstacles)
+        .colliders_at_rest(colliders)
         .build()
         .unwrap();
     simulation.set_hair_multiplicity(hair.iter().flat_map(StagedHair::hairs).collect());
-    simulation.set_self_occlusion(obstacles);
+    simulation.set_self_occlusion(colliders);
     simulation.set_volume(&scene.volume);
     simulation.set_wind_occlusion(&scene.wind_occlusion);
     simulation.set_neighbours(&scene.neighbours);

@@ -196,7 +196,7 @@ impl Stage {
 
     /// Sets the user colliders: a body that the app moves, such as a ball or a hand, made of closed shapes in
     /// their own space, which is at `pose`. They collide with all hair and are the last of
-    /// [`Stage::obstacles`]; the stage does not draw them. They move from their previous pose to `pose`
+    /// [`Stage::colliders`]; the stage does not draw them. They move from their previous pose to `pose`
     /// during the next step. New colliders start with zero velocity; this includes calls with a different
     /// number of shapes. Shapes that are not finite or have no interior are ignored. An empty slice removes
     /// all of them.
@@ -210,14 +210,14 @@ impl Stage {
     }
 
     /// Returns the colliders in their current state, with their motion in the last step.
-    pub fn obstacles(&self) -> &[MovingCollider] {
-        self.body.obstacles()
+    pub fn colliders(&self) -> &[MovingCollider] {
+        self.body.colliders()
     }
 
     /// Returns those of them that are the scene's own colliders, in its order, without hulls that span no
     /// volume.
-    pub fn colliders(&self) -> &[MovingCollider] {
-        self.body.colliders()
+    pub fn scene_colliders(&self) -> &[MovingCollider] {
+        self.body.scene_colliders()
     }
 
     /// Returns a report if parts of the collision mesh are thinner than its distance field can resolve.
@@ -289,7 +289,7 @@ impl Stage {
             dt,
             anchor: self.body.pose().anchor(),
             roots: &self.roots,
-            obstacles: self.body.obstacles(),
+            colliders: self.body.colliders(),
             air,
         });
         report.simulate = began.elapsed();

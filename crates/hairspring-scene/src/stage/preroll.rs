@@ -48,20 +48,20 @@ pub(super) fn settle(hair: &mut [StagedHair], scene: &Scene, body: &StagedBody) 
     simulation.set_volume(&Volume::default());
     simulation.set_neighbours(&Neighbours::default());
     let roots: Vec<RigidTransform> = hair.iter().flat_map(|hair| hair.roots()).copied().collect();
-    let mut obstacles = body.obstacles().to_vec();
+    let mut colliders = body.colliders().to_vec();
     let motions: Vec<Motion> = initial_push::motions(hair, body);
     let length = if pushes.is_empty() { scene.solver.preroll } else { scene.solver.preroll.max(PUSH) };
     let frames = (length * RATE).ceil();
     for frame in 0..frames as usize {
         let progress = |frame: usize| (frame as f32 / (MOVING * frames)).min(1.0);
         for (push, motion) in pushes.iter().zip(&motions) {
-            motion.set(&mut obstacles[push.obstacle].shape, (progress(frame), progress(frame + 1)));
+            motion.set(&mut colliders[push.collider].shape, (progress(frame), progress(frame + 1)));
         }
         simulation.step(&StepInput {
             dt: 1.0 / RATE,
             anchor,
             roots: &roots,
-            obstacles: &obstacles,
+            colliders: &colliders,
             air: Air::default(),
         });
     }

@@ -178,7 +178,7 @@ impl Stage {
         };
         let depth = |p: &Vec3| {
             let depth = |o: &hairspring::collide::MovingCollider| -o.shape.distance(o.end.inverse_point(*p));
-            self.body.obstacles().iter().map(depth).fold(0.0, f32::max)
+            self.body.colliders().iter().map(depth).fold(0.0, f32::max)
         };
         let deepest = |_, points: &[Vec3]| points.iter().skip(1).map(depth).fold(0.0, f32::max);
         StrandFigures {

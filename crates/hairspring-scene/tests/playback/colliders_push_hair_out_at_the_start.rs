@@ -64,7 +64,7 @@ fn shapes() -> Vec<(&'static str, Shape)> {
 
 /// Depth of the deepest point of any hair in the colliders [m].
 fn deepest(stage: &Stage) -> f32 {
-    let depth = |p: &Vec3| stage.obstacles().iter().map(|o| -o.end_pose().distance(*p)).fold(0.0, f32::max);
+    let depth = |p: &Vec3| stage.colliders().iter().map(|o| -o.end_pose().distance(*p)).fold(0.0, f32::max);
     points(stage).chunks(POINTS).flat_map(|strand| &strand[1..]).map(depth).fold(0.0, f32::max)
 }
 

@@ -42,7 +42,7 @@ fn roots_stay_on_a_body_moved_by_the_app() {
         let anchor = motion(frame).after(&here.body_anchor());
         assert!(anchor.translation.distance(carried.body_anchor().translation) < 1e-6);
         // The head's distance field moves with the body.
-        let end = carried.obstacles()[0].end;
+        let end = carried.colliders()[0].end;
         assert!(end.translation.distance(carried.body_anchor().translation) < 1e-6);
     }
     // The motion has an effect: hair lags behind.
@@ -84,11 +84,11 @@ fn a_ball_takes_hair_along_without_penetration() {
     for frame in 0..40 {
         stage.set_user_colliders(&[sphere(radius)], translation(ball(frame)));
         stage.step(FRAME);
-        let obstacle = stage.obstacles().last().unwrap();
-        assert!(matches!(obstacle.shape, ColliderShape::Sphere { radius: r, .. } if r == radius));
-        assert_eq!(obstacle.end.translation, ball(frame));
+        let collider = stage.colliders().last().unwrap();
+        assert!(matches!(collider.shape, ColliderShape::Sphere { radius: r, .. } if r == radius));
+        assert_eq!(collider.end.translation, ball(frame));
         let from = if frame == 0 { ball(0) } else { ball(frame - 1) };
-        assert_eq!(obstacle.start.translation, from, "frame {frame}");
+        assert_eq!(collider.start.translation, from, "frame {frame}");
         let points = stage.strands().next().unwrap().points.to_vec();
         let depth = points.iter().map(|p| radius - p.distance(ball(frame))).fold(0.0, f32::max);
         assert!(depth < 1e-4, "frame {frame}: hair penetrates the ball by {depth} m");
@@ -98,10 +98,10 @@ fn a_ball_takes_hair_along_without_penetration() {
     let pushed = stage.strands().next().unwrap().points.iter().map(|p| -p.z).fold(0.0, f32::max);
     assert!(pushed > 0.1, "the ball moved hair by only {pushed} m");
     stage.set_user_colliders(&[], REST);
-    assert!(stage.obstacles().is_empty());
+    assert!(stage.colliders().is_empty());
     for wrong in [f32::NAN, 0.0, -1.0] {
         stage.set_user_colliders(&[sphere(wrong)], REST);
-        assert!(stage.obstacles().is_empty(), "a radius of {wrong} was accepted");
+        assert!(stage.colliders().is_empty(), "a radius of {wrong} was accepted");
     }
     play(&mut stage, 300);
     let left = stage.strands().next().unwrap().points.iter().map(|p| p.z.abs()).fold(0.0, f32::max);
@@ -119,15 +119,15 @@ fn a_ball_stays_when_settings_change() {
     let grooms = vec![SceneGroom { materials: vec![Material::default()], ..SceneGroom::default() }];
     let settings = Scene { colliders, grooms, ..stage.scene().clone() };
     stage.update_settings(settings).unwrap();
-    assert_eq!(stage.obstacles().len(), 2);
-    assert_eq!(stage.obstacles()[1].end.translation, center);
+    assert_eq!(stage.colliders().len(), 2);
+    assert_eq!(stage.colliders()[1].end.translation, center);
     play(&mut stage, 60);
     let strands = stage.strands().next().unwrap();
     let depth = strands.points.iter().map(|p| 0.05 - p.distance(center)).fold(0.0, f32::max);
     assert!(depth < 1e-4, "hair penetrates the ball by {depth} m");
     stage.reset();
-    assert_eq!(stage.obstacles()[1].start, stage.obstacles()[1].end);
-    assert_eq!(stage.obstacles()[1].end.translation, center);
+    assert_eq!(stage.colliders()[1].start, stage.colliders()[1].end);
+    assert_eq!(stage.colliders()[1].end.translation, center);
 }
 
 #[test]

@@ -130,7 +130,7 @@ fn play(scene: Scene) {
     let points = points(&stage);
     assert!(points.iter().all(|p| p.is_finite()), "a point is not finite");
     let depth =
-        |p: &Vec3| stage.obstacles().iter().map(|o| -o.end_pose().distance(*p)).fold(f32::MIN, f32::max);
+        |p: &Vec3| stage.colliders().iter().map(|o| -o.end_pose().distance(*p)).fold(f32::MIN, f32::max);
     let deepest = points.chunks(POINTS).flat_map(|strand| &strand[1..]).map(depth).fold(f32::MIN, f32::max);
     // A strand that reaches below the bar must pass in front of it.
     let taken = points.chunks(POINTS).filter(|strand| {

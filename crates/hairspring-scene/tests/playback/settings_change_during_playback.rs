@@ -123,7 +123,7 @@ fn falling(groom: &Arc<Groom>, model: Model, integrator: Integrator) -> Simulati
 /// Simulates a frame; returns how many strands were reset because they were not finite.
 fn fall(simulation: &mut Simulation, groom: &Groom) -> usize {
     let (roots, air) = (roots(groom, REST), Air::default());
-    simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles: &[], air }).reset_strands
+    simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, colliders: &[], air }).reset_strands
 }
 
 #[test]
@@ -282,13 +282,13 @@ fn colliders_can_be_added_and_removed() {
     let ball = Shape::Sphere { center: Vec3::new(0.02, -0.15, -0.02), radius: 0.03 };
     let colliders = vec![Collider { joint: None, initial: InitialContact::Keep, shape: ball.clone() }];
     stage.update_settings(Scene { colliders, ..settings.clone() }).unwrap();
-    assert_eq!(stage.obstacles().len(), 1);
+    assert_eq!(stage.colliders().len(), 1);
     play(&mut stage, 60);
-    let ball = ball.obstacle().unwrap();
+    let ball = ball.collider_shape().unwrap();
     let inside = |stage: &Stage| points(stage).iter().map(|p| -ball.distance(*p)).fold(0.0, f32::max);
     assert!(inside(&stage) < 1e-4, "hair penetrates the ball by {} m", inside(&stage));
     stage.update_settings(settings).unwrap();
-    assert!(stage.obstacles().is_empty());
+    assert!(stage.colliders().is_empty());
     play(&mut stage, 600);
     let difference = farthest(&points(&stage), &scene.grooms[0].groom.points);
     assert!(difference < 2e-3, "the final offset is {difference} m");

@@ -82,7 +82,7 @@ fn slides(mu: f64, ratio: f64, method: Method) -> Result<bool, Failure> {
     setup.material.drag = 0.8;
     setup.material.friction = mu as f32;
     let axis = Vec3::Z * LENGTH as f32;
-    setup.obstacle = Some(ColliderShape::Capsule { a: -axis, b: axis, radius: radius as f32 });
+    setup.collider = Some(ColliderShape::Capsule { a: -axis, b: axis, radius: radius as f32 });
     let mut specimen = Specimen::new(setup, method);
     let greater = LOAD * LINE_DENSITY * LENGTH * GRAVITY;
     let pull = |point: usize, load: f64| {

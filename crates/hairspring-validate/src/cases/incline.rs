@@ -47,7 +47,7 @@ const SLIPPED: f64 = 1e-3;
 fn slides(mu: f64, slope: f64, method: Method) -> Result<bool, Failure> {
     let mut setup = Setup::chain(pinned(method.points, LENGTH, DVec3::X, DVec3::X));
     setup.material.friction = mu as f32;
-    setup.obstacle = Some(ColliderShape::Plane { point: Vec3::ZERO, normal: Vec3::Y });
+    setup.collider = Some(ColliderShape::Plane { point: Vec3::ZERO, normal: Vec3::Y });
     // The slope stays horizontal, and gravity is tilted instead.
     setup.gravity = DVec3::new(0.0, -1.0, slope).normalize() * GRAVITY;
     let mut specimen = Specimen::new(setup, method);

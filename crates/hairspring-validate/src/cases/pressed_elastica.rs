@@ -48,7 +48,7 @@ fn measure(height: f64, method: Method) -> Result<Vec<f64>, Failure> {
     let mut setup = Setup::weightless(straight(method.points, LENGTH, DVec3::NEG_Y), HAIR);
     setup.material.drag = 0.8;
     setup.material.friction = 0.0;
-    setup.obstacle = Some(ColliderShape::Plane { point: Vec3::NEG_Y * LENGTH as f32, normal: Vec3::Y });
+    setup.collider = Some(ColliderShape::Plane { point: Vec3::NEG_Y * LENGTH as f32, normal: Vec3::Y });
     let mut specimen = Specimen::new(setup, method);
     let unit = BENDING / (LENGTH * LENGTH);
     let force = Vec3::X * (ASIDE * unit) as f32;

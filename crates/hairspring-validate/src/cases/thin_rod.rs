@@ -45,7 +45,7 @@ fn distance(radius: f64, fall: f64, method: Method) -> Result<f64, Failure> {
     setup.material = Material { radius: Some(RADIUS as f32), ..Material::default() };
     let axis = DVec3::new(REACH, -fall - radius, 0.0);
     let [a, b] = [-LENGTH, LENGTH].map(|z| (axis + DVec3::Z * z).as_vec3());
-    setup.obstacle = Some(ColliderShape::Capsule { a, b, radius: radius as f32 });
+    setup.collider = Some(ColliderShape::Capsule { a, b, radius: radius as f32 });
     let mut specimen = Specimen::new(setup, method);
     for _ in 0..FRAMES {
         specimen.frame()?;

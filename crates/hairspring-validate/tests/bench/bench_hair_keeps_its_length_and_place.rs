@@ -143,8 +143,8 @@ fn shaken(
         let body = [MovingCollider::new(head.clone(), before, pose)];
         before = pose;
         let (roots, air) = (vec![pose; count], Air::default());
-        let obstacles: &[MovingCollider] = if alone { &[] } else { &body };
-        let report = simulation.step(&StepInput { dt, anchor: pose, roots: &roots, obstacles, air });
+        let colliders: &[MovingCollider] = if alone { &[] } else { &body };
+        let report = simulation.step(&StepInput { dt, anchor: pose, roots: &roots, colliders, air });
         assert_eq!(report.reset_strands, 0, "{what}, {method:?}, {time} s: one of {materials:?}");
     }
     simulation
@@ -216,7 +216,7 @@ fn a_non_finite_strand_is_reset_and_counted_without_affecting_others() {
         for frame in 0..60 {
             let bad = if Some(frame) == poisoned { f32::NAN } else { 0.1 };
             let (roots, air) = ([pose(0.0), pose(bad)], Air::default());
-            let input = StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles: &[], air };
+            let input = StepInput { dt: FRAME, anchor: REST, roots: &roots, colliders: &[], air };
             resets += simulation.step(&input).reset_strands;
         }
         assert_eq!(simulation.measure(&[]).non_finite, 0);

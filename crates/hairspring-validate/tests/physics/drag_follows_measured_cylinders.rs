@@ -82,7 +82,7 @@ fn drag_along_a_hair_is_smaller() {
         let wind = Wind { velocity: Vec3::X, ..Wind::default() };
         for _ in 0..60 {
             let air = Air { wind, ..Air::default() };
-            simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &[REST], obstacles: &[], air });
+            simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &[REST], colliders: &[], air });
         }
         f64::from(simulation.tension_at(0, 1))
     };

@@ -29,7 +29,7 @@ fn strand(points: Vec<Vec3>, material: Material, solver: Solver, gravity: Vec3) 
 /// Steps a strand with its root at the origin.
 fn step(simulation: &mut Simulation, dt: f64, wind: Vec3) -> Vec<Vec3> {
     let air = Air { wind: Wind { velocity: wind, ..Wind::default() }, ..Air::default() };
-    simulation.step(&StepInput { dt: dt as f32, anchor: REST, roots: &[REST], obstacles: &[], air });
+    simulation.step(&StepInput { dt: dt as f32, anchor: REST, roots: &[REST], colliders: &[], air });
     points(simulation)
 }
 

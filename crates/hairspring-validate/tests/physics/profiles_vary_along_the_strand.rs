@@ -49,9 +49,9 @@ fn step(simulation: &mut Simulation, wind: Vec3) -> Vec<Vec3> {
     step_on(simulation, wind, &[])
 }
 
-fn step_on(simulation: &mut Simulation, wind: Vec3, obstacles: &[MovingCollider]) -> Vec<Vec3> {
+fn step_on(simulation: &mut Simulation, wind: Vec3, colliders: &[MovingCollider]) -> Vec<Vec3> {
     let air = Air { wind: Wind { velocity: wind, ..Wind::default() }, ..Air::default() };
-    simulation.step(&StepInput { dt: 1.0 / 60.0, anchor: REST, roots: &[REST], obstacles, air });
+    simulation.step(&StepInput { dt: 1.0 / 60.0, anchor: REST, roots: &[REST], colliders, air });
     points(simulation)
 }
 

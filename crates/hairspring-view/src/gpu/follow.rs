@@ -116,11 +116,11 @@ pub(super) struct Followers {
 impl Gpu {
     /// Whether the GPU can interpolate follow hairs among these colliders. It does not support open sheets,
     /// or distance fields that are too large for it.
-    pub fn can_place_among(&self, obstacles: &[MovingCollider]) -> bool {
-        let numbers: usize = obstacles.iter().map(|o| Shape::of(o).map_or(0, |s| s.numbers.len())).sum();
+    pub fn can_place_among(&self, colliders: &[MovingCollider]) -> bool {
+        let numbers: usize = colliders.iter().map(|o| Shape::of(o).map_or(0, |s| s.numbers.len())).sum();
         let of_cpu =
             |o: &MovingCollider| matches!(o.shape, ColliderShape::Sheet(_) | ColliderShape::Custom(_));
-        !obstacles.iter().any(of_cpu)
+        !colliders.iter().any(of_cpu)
             && numbers as u64 * 4 <= self.device.limits().max_storage_buffer_binding_size
     }
 }
@@ -132,9 +132,9 @@ struct Shape<'a> {
 }
 
 impl<'a> Shape<'a> {
-    /// `None` if the obstacle is not a collider, or if only the CPU supports it.
-    fn of(obstacle: &'a MovingCollider) -> Option<Self> {
-        let (turn, at) = obstacle.end.matrix();
+    /// `None` if the GPU has no code for the shape.
+    fn of(collider: &'a MovingCollider) -> Option<Self> {
+        let (turn, at) = collider.end.matrix();
         let placed = |turn: Mat3, at: Vec3, kind: u32| {
             let [x, y, z] = [turn.x_axis.extend(at.x), turn.y_axis.extend(at.y), turn.z_axis.extend(at.z)];
             let (a, b) = (Vec4::ZERO, Vec4::ZERO);
@@ -150,7 +150,7 @@ impl<'a> Shape<'a> {
             numbers: planes.iter().flat_map(Vec4::to_array).collect(),
         };
         let alone = |collider| Self { collider, numbers: Default::default() };
-        Some(match &obstacle.shape {
+        Some(match &collider.shape {
             ColliderShape::Sphere { center, radius } => alone(capsule(*center, *center, *radius)),
             ColliderShape::Capsule { a, b, radius } => alone(capsule(*a, *b, *radius)),
             ColliderShape::Cuboid { center, half, axes } => {
@@ -181,8 +181,8 @@ impl World {
     }
 
     /// Sends the colliders, and the changed parts of their shapes. Returns the number of colliders.
-    fn send(&mut self, gpu: &Gpu, obstacles: &[MovingCollider], generation: &mut Generation) -> u32 {
-        let mut shapes: Vec<Shape> = obstacles.iter().filter_map(Shape::of).collect();
+    fn send(&mut self, gpu: &Gpu, colliders: &[MovingCollider], generation: &mut Generation) -> u32 {
+        let mut shapes: Vec<Shape> = colliders.iter().filter_map(Shape::of).collect();
         let mut first = 0;
         for shape in &mut shapes {
             shape.collider.first = first as u32;
@@ -341,14 +341,14 @@ impl Followers {
                 *groom = None;
                 continue;
             };
-            let world = worlds.iter().position(|(obstacles, _)| std::ptr::eq(*obstacles, now.obstacles));
+            let world = worlds.iter().position(|(colliders, _)| std::ptr::eq(*colliders, now.colliders));
             let world = world.unwrap_or_else(|| {
                 let k = worlds.len();
                 if self.worlds.len() == k {
                     self.worlds.push(World::new(gpu));
                     generation.next();
                 }
-                worlds.push((now.obstacles, self.worlds[k].send(gpu, now.obstacles, generation)));
+                worlds.push((now.colliders, self.worlds[k].send(gpu, now.colliders, generation)));
                 k
             });
             if groom.as_ref().is_none_or(|g| !Arc::ptr_eq(&g.layout, now.layout)) {

@@ -55,7 +55,7 @@ fn kept(points: &[Vec3]) -> f32 {
 fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usize {
     let mut stage = Stage::new(scene).unwrap();
     stage.set_external_interpolation(true);
-    assert!(gpu.gpu().can_place_among(stage.obstacles()));
+    assert!(gpu.gpu().can_place_among(stage.colliders()));
     let mut pushed = 0;
     for frame in 1..=frames {
         stage.step(1.0 / 60.0);
@@ -70,7 +70,7 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
             .flat_map(|s| {
                 let mut points = s.points.to_vec();
                 if let Some(f) = s.follow {
-                    HairInterpolation { obstacles: &[], ..f }.place(&mut points);
+                    HairInterpolation { colliders: &[], ..f }.place(&mut points);
                 }
                 points
             })
@@ -86,7 +86,7 @@ fn compare(gpu: &mut GpuRenderer, name: &str, scene: Scene, frames: u32) -> usiz
             let mut bare = s.points.to_vec();
             if let Some(f) = s.follow {
                 let effects = Effects { curl_radius: 0.0, noise: 0.0, ..f.effects };
-                HairInterpolation { obstacles: &[], effects, ..f }.place(&mut bare);
+                HairInterpolation { colliders: &[], effects, ..f }.place(&mut bare);
             }
             for k in 0..s.groom.strand_count() {
                 let range = s.groom.range(k);
@@ -173,5 +173,5 @@ fn sheets_are_not_supported_on_the_card() {
         thickness: 0.002,
         initial: InitialContact::Keep,
     }];
-    assert!(!gpu.gpu().can_place_among(Stage::new(scene).unwrap().obstacles()));
+    assert!(!gpu.gpu().can_place_among(Stage::new(scene).unwrap().colliders()));
 }

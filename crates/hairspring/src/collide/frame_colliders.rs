@@ -1,4 +1,4 @@
-//! The bodies of a frame, as obstacles for the wind and for the targets of manipulators.
+//! The bodies of a frame, as colliders for the wind and for the targets of manipulators.
 
 use crate::collide::MovingCollider;
 use crate::math::RigidTransform;
@@ -7,35 +7,35 @@ use glam::Vec3;
 /// All colliders of a frame.
 #[derive(Clone, Copy)]
 pub(crate) struct FrameColliders<'a> {
-    obstacles: &'a [MovingCollider],
+    colliders: &'a [MovingCollider],
     carried: Option<&'a RigidTransform>,
 }
 
 impl<'a> FrameColliders<'a> {
     /// Creates the set for hair that was moved rigidly by `carried` before the frame.
-    pub fn new((obstacles, carried): (&'a [MovingCollider], Option<&'a RigidTransform>)) -> Self {
-        Self { obstacles, carried }
+    pub fn new((colliders, carried): (&'a [MovingCollider], Option<&'a RigidTransform>)) -> Self {
+        Self { colliders, carried }
     }
 
     /// Projects `place` out of the bodies at the start of the frame: to the nearest place that is at most
     /// `-clearance` deep. `clearance` is 0 or less [m].
     pub fn out(&self, place: Vec3, clearance: f32) -> Vec3 {
-        self.obstacles.iter().fold(place, |place, o| out_of(o, &o.start(self.carried), place, clearance))
+        self.colliders.iter().fold(place, |place, o| out_of(o, &o.start(self.carried), place, clearance))
     }
 
     /// The same at the end of the frame.
     pub fn out_at_end(&self, place: Vec3, clearance: f32) -> Vec3 {
-        self.obstacles.iter().fold(place, |place, o| out_of(o, &o.end, place, clearance))
+        self.colliders.iter().fold(place, |place, o| out_of(o, &o.end, place, clearance))
     }
 
     /// Distance from `place` to the nearest body at the start of the frame, below 0 inside [m].
     pub fn clearance(&self, place: Vec3) -> f32 {
         let distance = |o: &MovingCollider| o.shape.distance(o.start(self.carried).inverse_point(place));
-        self.obstacles.iter().map(distance).fold(f32::INFINITY, f32::min)
+        self.colliders.iter().map(distance).fold(f32::INFINITY, f32::min)
     }
 }
 
-fn out_of(obstacle: &MovingCollider, pose: &RigidTransform, place: Vec3, clearance: f32) -> Vec3 {
-    let (distance, normal) = obstacle.shape.distance_and_normal(pose.inverse_point(place));
+fn out_of(collider: &MovingCollider, pose: &RigidTransform, place: Vec3, clearance: f32) -> Vec3 {
+    let (distance, normal) = collider.shape.distance_and_normal(pose.inverse_point(place));
     place - pose.rotation * normal * (distance - clearance).min(0.0)
 }

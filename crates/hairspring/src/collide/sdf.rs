@@ -412,17 +412,17 @@ pub(super) mod tests {
                     translation: Vec3::X * (0.008 * frame as f32 - 0.25),
                     ..anchor
                 };
-                let obstacles = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
+                let colliders = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
                 let air = Air::default();
                 simulation.step(&StepInput {
                     dt: 1.0 / 60.0,
                     anchor,
                     roots: &roots,
-                    obstacles: &obstacles,
+                    colliders: &colliders,
                     air,
                 });
                 simulation.write_points(&mut points);
-                let distance = |p: &&Vec3| shape.distance(obstacles[0].end.inverse_point(**p)).abs();
+                let distance = |p: &&Vec3| shape.distance(colliders[0].end.inverse_point(**p)).abs();
                 touched += points.iter().filter(|p| distance(p) < 1e-4).count();
             }
             assert!(touched > 100, "{touched} points in contact");

@@ -10,7 +10,7 @@ use glam::Vec3;
 /// Moves the points of one strand that are deeper inside a collider than their `clearance` (0 or less) [m] to
 /// that depth. The root, the first point, is not moved.
 #[inline(always)]
-pub(super) fn keep_out<S: Simd>(simd: S, obstacles: &[ColliderPose], points: &mut [Vec3], clearance: &[f32]) {
+pub(super) fn keep_out<S: Simd>(simd: S, colliders: &[ColliderPose], points: &mut [Vec3], clearance: &[f32]) {
     let (Some((_, points)), Some((_, clearance))) = (points.split_first_mut(), clearance.split_first())
     else {
         return;
@@ -28,7 +28,7 @@ pub(super) fn keep_out<S: Simd>(simd: S, obstacles: &[ColliderPose], points: &mu
         let mut p = V3::load(simd, &rows[..3]);
         let allowed = load(simd, &rows[3]);
         let mut moved = false;
-        for pose in obstacles {
+        for pose in colliders {
             if !pose.broadphase_test(simd, p).any_true() {
                 continue;
             }

@@ -107,7 +107,7 @@ pub struct HairInterpolation<'a> {
     /// Current positions of all guide points [m]; shape `[guide points]`.
     pub guide_points: &'a [Vec3],
     /// Colliders that hairs are kept out of, at their poses at the end of the frame.
-    pub obstacles: &'a [MovingCollider],
+    pub colliders: &'a [MovingCollider],
 }
 
 impl std::fmt::Debug for HairInterpolation<'_> {
@@ -144,7 +144,7 @@ impl Follow {
     ///
     /// - `guides`: the simulated strands.
     /// - `weights`: for every strand, strands of the groom that are in `guides`; shape `[strands]`.
-    /// - `obstacles`: colliders at rest. Points that start inside may stay as deep as they are.
+    /// - `colliders`: colliders at rest. Points that start inside may stay as deep as they are.
     ///
     /// # Panics
     /// If `guides` or `weights` name a strand that does not exist or is no guide, or `weights` is too short.
@@ -153,7 +153,7 @@ impl Follow {
         guides: &[u32],
         weights: &[GuideWeights],
         effects: Effects,
-        obstacles: &[ColliderPose],
+        colliders: &[ColliderPose],
     ) -> Self {
         let mut guide_indices = vec![u32::MAX; groom.strand_count()];
         let mut guide_offsets = vec![0];
@@ -169,9 +169,9 @@ impl Follow {
         let clearance = groom
             .points
             .par_iter()
-            .map(|p| obstacles.iter().map(|o| o.distance(*p)).fold(0.0, f32::min))
+            .map(|p| colliders.iter().map(|o| o.distance(*p)).fold(0.0, f32::min))
             .collect();
-        let apart = sheet_side::apart(&groom, guides, &weights, &guide_coordinates, obstacles);
+        let apart = sheet_side::apart(&groom, guides, &weights, &guide_coordinates, colliders);
         let guide_transforms = vec![Affine3A::IDENTITY; *guide_offsets.last().unwrap_or(&0) as usize];
         let guides = guides.to_vec();
         let layout = FollowLayout {
@@ -187,11 +187,11 @@ impl Follow {
         Self { layout: Arc::new(layout), effects, guide_transforms }
     }
 
-    /// Creates the same hairs with the same guides for another rest pose: that of `groom`, with `obstacles`.
-    pub fn with_rest_pose(&self, groom: Arc<Groom>, obstacles: &[ColliderPose]) -> Self {
+    /// Creates the same hairs with the same guides for another rest pose: that of `groom`, with `colliders`.
+    pub fn with_rest_pose(&self, groom: Arc<Groom>, colliders: &[ColliderPose]) -> Self {
         let FollowLayout { guides, weights, .. } = &*self.layout;
         let name = |w: &GuideWeights| GuideWeights { guides: w.guides.map(|g| guides[g as usize]), ..*w };
-        Self::new(groom, guides, &weights.iter().map(name).collect::<Vec<_>>(), self.effects, obstacles)
+        Self::new(groom, guides, &weights.iter().map(name).collect::<Vec<_>>(), self.effects, colliders)
     }
 
     /// Replaces the styling of the follow hairs and returns the previous one.
@@ -219,14 +219,14 @@ impl Follow {
     }
 
     /// Returns the data of the current frame: the last computed transforms, with guides at `guide_points` [m]
-    /// and colliders `obstacles`.
+    /// and colliders `colliders`.
     pub fn interpolation<'a>(
         &'a self,
         guide_points: &'a [Vec3],
-        obstacles: &'a [MovingCollider],
+        colliders: &'a [MovingCollider],
     ) -> HairInterpolation<'a> {
         let Self { layout, effects, guide_transforms } = self;
-        HairInterpolation { layout, effects: *effects, guide_transforms, guide_points, obstacles }
+        HairInterpolation { layout, effects: *effects, guide_transforms, guide_points, colliders }
     }
 
     /// Returns the index of a strand among the guides, or `None` if it is not a guide.
@@ -298,7 +298,7 @@ impl HairInterpolation<'_> {
     /// # Panics
     /// If an array has another shape.
     pub fn place_every(&self, every: usize, offsets: &[u32], out: &mut [Vec3]) {
-        let poses: Vec<ColliderPose> = self.obstacles.iter().map(MovingCollider::end_pose).collect();
+        let poses: Vec<ColliderPose> = self.colliders.iter().map(MovingCollider::end_pose).collect();
         let strands = split_by(out, offsets).into_par_iter().enumerate();
         strands.with_min_len(64).for_each(|(s, strand)| self.place_strand(s * every, &poses, strand));
     }

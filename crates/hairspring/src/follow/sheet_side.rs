@@ -35,16 +35,16 @@ pub(super) fn apart(
     guides: &[u32],
     weights: &[GuideWeights],
     coordinates: &[[u16; 3]],
-    obstacles: &[ColliderPose],
+    colliders: &[ColliderPose],
 ) -> Vec<bool> {
-    if shells(obstacles).next().is_none() {
+    if shells(colliders).next().is_none() {
         return Vec::new();
     }
     let of_strand = |s: usize| {
         let lead = groom.strand(guides[weights[s].guides[0] as usize] as usize);
         groom.range(s).map(move |i| {
             let guide = point_on_guide(lead, coordinates[i][0]);
-            shells(obstacles).any(|(shell, pose)| crossing(shell, pose, guide, groom.points[i]).is_some())
+            shells(colliders).any(|(shell, pose)| crossing(shell, pose, guide, groom.points[i]).is_some())
         })
     };
     let apart: Vec<bool> = (0..groom.strand_count()).into_par_iter().flat_map_iter(of_strand).collect();
@@ -54,13 +54,13 @@ pub(super) fn apart(
 /// Moves those points of a strand that a shell separates from the strand's first guide, with points `lead`, to
 /// the guide's side of it. The root is not moved, and neither are points that are `apart` at rest.
 pub(super) fn keep_on_side(
-    obstacles: &[ColliderPose],
+    colliders: &[ColliderPose],
     lead: &[Vec3],
     ride: &[[u16; 3]],
     apart: Option<&[bool]>,
     strand: &mut [Vec3],
 ) {
-    for (shell, pose) in shells(obstacles) {
+    for (shell, pose) in shells(colliders) {
         for (i, (p, ride)) in strand.iter_mut().zip(ride).enumerate().skip(1) {
             if apart.is_some_and(|apart| apart[i]) {
                 continue;

@@ -36,7 +36,7 @@ impl Simulation {
     }
 
     /// Returns the depth of the segment that ends at each point at rest, see `Tile::rest_penetration`.
-    pub(super) fn authored_depths(&self, obstacles: &[ColliderPose]) -> Vec<Row> {
+    pub(super) fn authored_depths(&self, colliders: &[ColliderPose]) -> Vec<Row> {
         let tiles: Vec<Vec<Row>> = self
             .model
             .tiles
@@ -49,7 +49,7 @@ impl Simulation {
                     let stride = tile.model.stride();
                     for i in (2 * stride..points.len()).step_by(stride) {
                         let [a, b] = [points[i - stride], points[i]];
-                        let depth = obstacles.iter().map(|o| o.least_distance(a, b).min(o.distance(a)));
+                        let depth = colliders.iter().map(|o| o.least_distance(a, b).min(o.distance(a)));
                         depths[i].0[lane] = depth.fold(0.0, f32::min);
                     }
                 }

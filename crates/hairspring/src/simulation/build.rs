@@ -157,7 +157,7 @@ impl Simulation {
         other
     }
 
-    fn fill(&mut self, obstacles: &[ColliderPose]) {
+    fn fill(&mut self, colliders: &[ColliderPose]) {
         let gravity = if self.model.solver.sag_free { self.model.gravity.as_dvec3() } else { DVec3::ZERO };
         let anchor = self.state.anchor;
         let model = Arc::make_mut(&mut self.model);
@@ -204,7 +204,7 @@ impl Simulation {
                         Fiber { double: tile.double, ..fiber(material, scale, model, &solver, &radii) };
                     let shape = shape(model, &points, &fiber, gravity);
                     start = start + shape.start;
-                    into.write_strand(&points, &shape, anchor, obstacles);
+                    into.write_strand(&points, &shape, anchor, colliders);
                     let radius = radii.iter().sum::<f32>() / radii.len() as f32;
                     let rows = &mut *into.strand;
                     write_surface(rows, lane, material, scale);
@@ -414,7 +414,7 @@ impl Lane<'_> {
         points: &[Vec3],
         shape: &RestShape,
         anchor: RigidTransform,
-        obstacles: &[ColliderPose],
+        colliders: &[ColliderPose],
     ) {
         let lane = self.lane;
         let last = points.len() - 1;
@@ -433,7 +433,7 @@ impl Lane<'_> {
             }
             let at = points[i.min(last)];
             let before = points[i.saturating_sub(1).min(last)];
-            let depth = obstacles.iter().map(|o| o.distance(at)).fold(0.0_f32, f32::min);
+            let depth = colliders.iter().map(|o| o.distance(at)).fold(0.0_f32, f32::min);
             rows[rest::CLEARANCE].0[lane] = depth;
             Self::write_vector(&mut self.state[i][state::EDGE..], lane, at - before);
         }

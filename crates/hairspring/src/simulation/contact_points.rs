@@ -19,7 +19,7 @@ pub struct ContactPoint {
     pub position: Vec3,
     /// Normal force in the last substep, above 0 [N].
     pub force: f32,
-    /// Index in `obstacles` of the collider that is nearest to `position`. The solver stores the force of a
+    /// Index in `colliders` of the collider that is nearest to `position`. The solver stores the force of a
     /// contact, but not its collider. Where two colliders overlap, the force may be from the other one.
     pub collider: usize,
     /// [`MovingCollider::user_data`] of that collider.
@@ -31,8 +31,8 @@ pub struct ContactPoint {
 }
 
 impl Simulation {
-    /// Returns the contacts of all strands with `obstacles`, the colliders of the last step at the end of the
-    /// frame: strand by strand, from the root. Without obstacles there are none.
+    /// Returns the contacts of all strands with `colliders`, the colliders of the last step at the end of the
+    /// frame: strand by strand, from the root. Without colliders there are none.
     ///
     /// ```
     /// use hairspring::prelude::*;
@@ -42,17 +42,17 @@ impl Simulation {
     /// let solver = Solver { sag_free: false, ..Solver::default() };
     /// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).solver(solver).build()?;
     /// let floor = ColliderShape::Plane { point: Vec3::NEG_Y * 0.05, normal: Vec3::Y };
-    /// let obstacles = [MovingCollider::at_rest(floor, RigidTransform::default()).with_user_data(7)];
+    /// let colliders = [MovingCollider::at_rest(floor, RigidTransform::default()).with_user_data(7)];
     /// let (anchor, roots) = (RigidTransform::default(), [RigidTransform::default()]);
     /// let input =
-    ///     StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &obstacles, air: Air::default() };
+    ///     StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &colliders, air: Air::default() };
     /// (0..60).for_each(|_| _ = simulation.step(&input));
-    /// let contacts = simulation.contact_points(&obstacles);
+    /// let contacts = simulation.contact_points(&colliders);
     /// assert!(contacts.iter().all(|contact| contact.user_data == 7 && contact.normal == Vec3::Y));
     /// assert!(!contacts.is_empty());
     /// # Ok::<(), hairspring::simulation::BuildError>(())
     /// ```
-    pub fn contact_points(&self, obstacles: &[MovingCollider]) -> Vec<ContactPoint> {
+    pub fn contact_points(&self, colliders: &[MovingCollider]) -> Vec<ContactPoint> {
         let mut contacts = Vec::new();
         for (strand, view) in self.each_strand().enumerate() {
             let mut before = view.root();
@@ -62,9 +62,9 @@ impl Simulation {
                 for (fraction, force) in [view.segment_contact(i), (1.0, view.normal_force(i))] {
                     let position = before.lerp(x, fraction);
                     let touches = point >= 2 && force > 0.0;
-                    let near = touches.then(|| nearest(obstacles, position)).flatten();
+                    let near = touches.then(|| nearest(colliders, position)).flatten();
                     let Some((collider, distance, normal)) = near else { continue };
-                    let user_data = obstacles[collider].user_data;
+                    let user_data = colliders[collider].user_data;
                     contacts.push(ContactPoint {
                         strand,
                         point,
@@ -86,8 +86,8 @@ impl Simulation {
 
 /// Returns the collider nearest to `position` at the end of the frame, the distance [m] and the normal in
 /// world space.
-fn nearest(obstacles: &[MovingCollider], position: Vec3) -> Option<(usize, f32, Vec3)> {
-    let seen = obstacles.iter().enumerate().map(|(k, o)| {
+fn nearest(colliders: &[MovingCollider], position: Vec3) -> Option<(usize, f32, Vec3)> {
+    let seen = colliders.iter().enumerate().map(|(k, o)| {
         let (distance, normal) = o.shape.distance_and_normal(o.end.inverse_point(position));
         (k, distance, o.end.rotation * normal)
     });

@@ -27,11 +27,11 @@ pub struct Contacts {
 }
 
 impl Simulation {
-    /// Counts the contacts of all strands with `obstacles`, the colliders of the last step. It reads the state
+    /// Counts the contacts of all strands with `colliders`, the colliders of the last step. It reads the state
     /// after the step, so steps whose contacts are not counted cost nothing extra. For the place and the
     /// collider of each contact, see [`Simulation::contact_points`].
-    pub fn contacts(&self, obstacles: &[MovingCollider]) -> Contacts {
-        let poses: Vec<_> = obstacles.iter().map(|o| (&o.shape, o.end)).collect();
+    pub fn contacts(&self, colliders: &[MovingCollider]) -> Contacts {
+        let poses: Vec<_> = colliders.iter().map(|o| (&o.shape, o.end)).collect();
         // Summed in a fixed order, so that the force is bitwise independent of the number of threads.
         let of_strands: Vec<Contacts> = self
             .model

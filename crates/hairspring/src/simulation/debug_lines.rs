@@ -151,7 +151,7 @@ impl Simulation {
     /// let strand: Vec<Vec3> = (0..16).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
     /// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
     /// let (anchor, roots) = (RigidTransform::default(), [RigidTransform::default()]);
-    /// let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &[], air: Air::default() };
+    /// let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &[], air: Air::default() };
     /// simulation.step(&input);
     /// let lines = simulation.debug_lines(&input, DebugRenderMode::SEGMENTS);
     /// assert_eq!(lines.len(), 15);
@@ -162,7 +162,7 @@ impl Simulation {
         if mode.contains(DebugRenderMode::SEGMENTS) {
             self.add_segments(&mut lines);
         }
-        for contact in self.contact_points(last.obstacles) {
+        for contact in self.contact_points(last.colliders) {
             if mode.contains(DebugRenderMode::CONTACT_POINTS) {
                 for axis in Vec3::AXES {
                     let half = axis * MARK;
@@ -178,7 +178,7 @@ impl Simulation {
             self.add_roots(&mut lines);
         }
         if mode.contains(DebugRenderMode::COLLIDERS) {
-            last.obstacles.iter().for_each(|obstacle| lines.add_collider(obstacle));
+            last.colliders.iter().for_each(|collider| lines.add_collider(collider));
         }
         if mode.contains(DebugRenderMode::WIND) && last.air.moves() {
             self.add_wind(last, &mut lines);

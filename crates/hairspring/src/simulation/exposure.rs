@@ -47,9 +47,9 @@ const COEFFICIENT: f32 = 4.0;
 const LEAST: f32 = 0.02;
 
 impl Simulation {
-    /// Enables self-occlusion, from the density of the groom at rest and `obstacles` at rest. Without it,
+    /// Enables self-occlusion, from the density of the groom at rest and `colliders` at rest. Without it,
     /// every strand has the drag of a lone hair.
-    pub fn set_self_occlusion(&mut self, obstacles: &[ColliderPose]) {
+    pub fn set_self_occlusion(&mut self, colliders: &[ColliderPose]) {
         let points = || self.strands().flat_map(|s| self.model.groom.strand(s as usize).iter().copied());
         let low = points().fold(Vec3::INFINITY, Vec3::min);
         let high = points().fold(Vec3::NEG_INFINITY, Vec3::max);
@@ -57,7 +57,7 @@ impl Simulation {
         while grid.edge < MOST_EDGE && grid.strands_per_cell() < FEW {
             grid = self.dense_grid(low, high, 2.0 * grid.edge);
         }
-        let depth = grid.depths(obstacles);
+        let depth = grid.depths(colliders);
         let mut found = Vec::with_capacity(self.point_count());
         for (place, s) in self.model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let tile = self.model.tiles[place / LANES];
@@ -137,12 +137,12 @@ impl Grid {
 
     /// Smallest τ from outside to each cell, not counting the cell itself (Dijkstra 1959); infinite where
     /// colliders enclose it.
-    fn depths(&self, obstacles: &[ColliderPose]) -> Vec<f32> {
+    fn depths(&self, colliders: &[ColliderPose]) -> Vec<f32> {
         let steps = [1, self.dims[0], self.dims[0] * self.dims[1]];
         let along = |cell: usize, axis: usize| cell / steps[axis] % self.dims[axis];
         let blocked = |cell: usize| {
             let at = Vec3::from([0, 1, 2].map(|axis| along(cell, axis) as f32 + 0.5)) * self.edge + self.low;
-            self.cost[cell] == 0.0 && obstacles.iter().any(|o| o.distance(at) < 0.0)
+            self.cost[cell] == 0.0 && colliders.iter().any(|o| o.distance(at) < 0.0)
         };
         let mut depths = vec![f32::INFINITY; self.cost.len()];
         let mut queue = BinaryHeap::new();

@@ -41,7 +41,7 @@ impl Simulation {
         };
         self.forces.prepare(self.state.points.len(), kinds);
         let anchor = self.state.anchor;
-        let bodies = FrameColliders::new((input.obstacles, carried));
+        let bodies = FrameColliders::new((input.colliders, carried));
         let began = Instant::now();
         if let Some(volume) = self.volume.as_mut().filter(|_| with_volume || occluded) {
             volume.begin_frame();
@@ -50,7 +50,7 @@ impl Simulation {
             let hair = (&self.state.roots[..], &self.state.points[..]);
             volume.measure(hair, &now);
             if with_volume {
-                let first = (&frame.substeps[0].obstacles[..], frame.h);
+                let first = (&frame.substeps[0].colliders[..], frame.h);
                 let dt = frame.now.len() as f32 * frame.h;
                 volume.compute_accelerations(dt, hair, &now, first, &mut self.forces.external_acceleration);
             }
@@ -132,7 +132,7 @@ impl Simulation {
         let now = Now { anchor, gone: frame.begun().0 };
         let hair = (&self.state.roots[..], &self.state.points[..]);
         volume.measure(hair, &now);
-        let first = (&frame.substeps[frame.now.start].obstacles[..], frame.h);
+        let first = (&frame.substeps[frame.now.start].colliders[..], frame.h);
         volume.compute_accelerations(
             frame.now.len() as f32 * frame.h,
             hair,

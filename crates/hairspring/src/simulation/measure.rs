@@ -58,8 +58,8 @@ pub struct Measure {
 
 impl Simulation {
     /// Measures the state against the colliders at the end of their frame.
-    pub fn measure(&self, obstacles: &[MovingCollider]) -> Measure {
-        let poses: Vec<_> = obstacles.iter().map(|o| (o, o.end)).collect();
+    pub fn measure(&self, colliders: &[MovingCollider]) -> Measure {
+        let poses: Vec<_> = colliders.iter().map(|o| (o, o.end)).collect();
         let (sum, segments, figures) = self
             .model
             .lane_of_strand
@@ -177,7 +177,7 @@ impl Measure {
     }
 }
 
-/// Returns the obstacles that may be nearer to `p` than `reach` [m], by their bounding spheres.
+/// Returns the colliders that may be nearer to `p` than `reach` [m], by their bounding spheres.
 fn near<'a>(
     poses: &'a [(&MovingCollider, RigidTransform)],
     p: Vec3,

@@ -8,7 +8,7 @@
 //! let solver = Solver { sag_free: false, ..Default::default() };
 //! let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).solver(solver).build()?;
 //! let (anchor, roots) = (RigidTransform::default(), [RigidTransform::default()]);
-//! let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, obstacles: &[], air: Air::default() };
+//! let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &[], air: Air::default() };
 //! let saved = simulation.snapshot();
 //! let report = simulation.step(&input);
 //! assert_eq!((report.substeps, report.reset_strands), (4, 0));

@@ -63,7 +63,7 @@ mod tests {
             dt: 0.1,
             anchor: root,
             roots: &roots,
-            obstacles: &[],
+            colliders: &[],
             air: Air::default(),
         });
         let mut points = [Vec3::ZERO; 8];

@@ -29,7 +29,7 @@ pub struct StepInput<'a> {
     /// rotation since rest.
     pub roots: &'a [RigidTransform],
     /// Colliders.
-    pub obstacles: &'a [MovingCollider],
+    pub colliders: &'a [MovingCollider],
     /// Moving air.
     pub air: Air<'a>,
 }
@@ -114,7 +114,7 @@ impl Simulation {
         let solver = self.model.solver;
         let carried = self.carry_along(input);
         // For bodies with several time slices, each slice has the same number of substeps.
-        let parts = input.obstacles.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
+        let parts = input.colliders.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
         let substeps = ((f64::from(input.dt) / (substep_length(&solver) * LONGER)).ceil() as u32)
             .max(self.substeps_past(input, carried.as_ref()))
             .clamp(1, MAX_SUBSTEPS)
@@ -126,13 +126,13 @@ impl Simulation {
             // Discard the segment contacts: nothing would update them until segments are tested again.
             self.state.segment_contacts.fill([Row::default(); segment_contact::ROWS]);
         }
-        self.begin_manipulators(&FrameColliders::new((input.obstacles, carried.as_ref())));
+        self.begin_manipulators(&FrameColliders::new((input.colliders, carried.as_ref())));
         let (reset_strands, times) = self.run_substeps(input, carried.as_ref(), &mut frame);
         self.end_holds();
         self.end_manipulators(input.dt);
         self.state.last_h = frame.h;
         // Release the colliders' shapes to the caller.
-        frame.substeps.iter_mut().for_each(|s| s.obstacles.clear());
+        frame.substeps.iter_mut().for_each(|s| s.colliders.clear());
         self.frame = frame;
         StepReport { substeps, reset_strands, times }
     }
@@ -170,7 +170,7 @@ impl Simulation {
             !(solver.integrator.limits_strain()
                 && segment_contact_unneeded(self.model.longest_segment, o.shape.roundness()))
         };
-        frame.segments = solver.segment_contacts && input.obstacles.iter().any(may_cut);
+        frame.segments = solver.segment_contacts && input.colliders.iter().any(may_cut);
         frame.projection_iterations = solver.projection_iterations;
         frame.gravity = self.model.gravity;
         frame.anchor = from.matrix();
@@ -182,8 +182,8 @@ impl Simulation {
             substep.fraction = fraction;
             substep.anchor = from.lerp(&input.anchor, fraction).matrix();
             substep.wind = input.air.uniform(fraction * input.dt);
-            substep.obstacles.clear();
-            substep.obstacles.extend(input.obstacles.iter().map(|o| {
+            substep.colliders.clear();
+            substep.colliders.extend(input.colliders.iter().map(|o| {
                 let start = o.start(carried);
                 let at = |t: f32| start.lerp(&o.end, t).matrix();
                 let (parts, count) = (o.shape.time_slices(), count as usize);

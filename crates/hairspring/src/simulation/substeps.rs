@@ -51,20 +51,20 @@ impl Simulation {
     /// far away.
     pub(super) fn substeps_past(&self, input: &StepInput, carried: Option<&RigidTransform>) -> u32 {
         let mut needed = 1;
-        for obstacle in input.obstacles {
-            needed = needed.max(self.substeps_of_hair(input, carried, obstacle));
+        for collider in input.colliders {
+            needed = needed.max(self.substeps_of_hair(input, carried, collider));
             // Relative to the anchor, because hair moves with it.
-            let start = self.state.anchor.inverse().after(&obstacle.start(carried));
-            let end = input.anchor.inverse().after(&obstacle.end);
-            let (center, radius) = obstacle.shape.bounds();
+            let start = self.state.anchor.inverse().after(&collider.start(carried));
+            let end = input.anchor.inverse().after(&collider.end);
+            let (center, radius) = collider.shape.bounds();
             let [a, b] = [start, end].map(|pose| pose.point(center));
             let turn = start.rotation.angle_between(end.rotation);
             let way = a.distance(b) + turn * radius;
             if !way.is_finite() || !radius.is_finite() || way < SLOW * radius {
                 continue;
             }
-            let half = obstacle.shape.half_thickness();
-            let very_thin = obstacle.shape.is_thin(VERY_THIN);
+            let half = collider.shape.half_thickness();
+            let very_thin = collider.shape.is_thin(VERY_THIN);
             let (part, most) = if very_thin { (PART_OF_THIN, MOST_OF_SOLID) } else { (MAX_TRAVEL, MOST) };
             let count = (way / (part * half).max(1e-12)).ceil().min(most);
             if count <= 1.0 {
@@ -88,13 +88,13 @@ impl Simulation {
         &self,
         input: &StepInput,
         carried: Option<&RigidTransform>,
-        obstacle: &MovingCollider,
+        collider: &MovingCollider,
     ) -> u32 {
-        let shape = &obstacle.shape;
+        let shape = &collider.shape;
         if !shape.is_thin(THIN) {
             return 1;
         }
-        let (start, end) = (obstacle.start(carried), obstacle.end);
+        let (start, end) = (collider.start(carried), collider.end);
         let (center, radius) = shape.bounds();
         let center = start.point(center);
         let part = (MAX_TRAVEL * shape.half_thickness()).max(1e-12);

@@ -32,7 +32,7 @@ pub(super) struct Motion {
 
 impl Simulation {
     /// Moves all hair rigidly, including its motion, by a rotation about the world's origin and then a
-    /// translation [m]. The next step starts there: its anchor, roots and obstacles must be moved in the same
+    /// translation [m]. The next step starts there: its anchor, roots and colliders must be moved in the same
     /// way.
     pub fn teleport(&mut self, by: RigidTransform) {
         let turn = Mat3::from_quat(by.rotation);

@@ -43,7 +43,7 @@ impl Simulation {
     /// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
     /// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
     /// let anchor = RigidTransform::default();
-    /// let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &[], obstacles: &[], air: Air::default() };
+    /// let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &[], colliders: &[], air: Air::default() };
     /// let refused = simulation.try_step(&input);
     /// assert_eq!(refused, Err(StepError::RootCount { roots: 0, strands: 1 }));
     /// # Ok::<(), hairspring::simulation::BuildError>(())
@@ -66,7 +66,7 @@ impl Simulation {
         if let Some(root) = input.roots.iter().position(broken) {
             return Err(StepError::Root(root));
         }
-        if let Some(collider) = input.obstacles.iter().position(|o| broken(&o.start) || broken(&o.end)) {
+        if let Some(collider) = input.colliders.iter().position(|o| broken(&o.start) || broken(&o.end)) {
             return Err(StepError::Collider(collider));
         }
         if !input.air.wind.velocity.is_finite() {

@@ -62,7 +62,7 @@ pub struct SubstepContext<'a, S: Simd> {
     /// Strands that are in contact.
     pub touches: Mask<S>,
     /// Colliders, each with its pose at the start and at the end of the substep.
-    pub obstacles: &'a [ColliderPose],
+    pub colliders: &'a [ColliderPose],
 }
 
 impl<S: Simd> SubstepContext<'_, S> {

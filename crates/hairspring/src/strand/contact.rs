@@ -65,7 +65,7 @@ pub fn assemble_contact<S: Simd, const B: usize>(
         return;
     }
     let Surface { distance: mut gap, mut normal, carried } =
-        nearest(simd, step.obstacles, x + step.root.position);
+        nearest(simd, step.colliders, x + step.root.position);
     gap -= load(simd, &tile.rest[i][rest::CLEARANCE]);
 
     // The contact is closed while N could close the gap within a substep. Points farther away are released.
@@ -109,13 +109,13 @@ pub struct Surface<S: Simd> {
 
 /// Finds the surface nearest to `world`. Not inlined: all models and sweeps share one copy.
 #[inline(never)]
-pub fn nearest<S: Simd>(simd: S, obstacles: &[ColliderPose], world: V3<S>) -> Surface<S> {
+pub fn nearest<S: Simd>(simd: S, colliders: &[ColliderPose], world: V3<S>) -> Surface<S> {
     simd.vectorize(
         #[inline(always)]
         || {
             let zero = V3::zero(simd);
             let mut surface = Surface { distance: F::splat(simd, f32::MAX), normal: zero, carried: zero };
-            for pose in obstacles {
+            for pose in colliders {
                 let (distance, normal) = contact(simd, pose, world);
                 let nearest = distance.simd_lt(surface.distance);
                 let carried = surface_displacement(simd, pose, world);

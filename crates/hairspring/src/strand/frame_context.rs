@@ -56,5 +56,5 @@ pub struct Substep {
     /// Velocity of the air [m/s].
     pub wind: Vec3,
     /// Colliders, each with its pose at the start and at the end of the substep.
-    pub obstacles: Vec<ColliderPose>,
+    pub colliders: Vec<ColliderPose>,
 }

@@ -112,7 +112,7 @@ where
         root,
         second_order: false,
         touches: Mask::splat(simd, false),
-        obstacles: &[],
+        colliders: &[],
     };
     let mut memory = Memory::default();
     let mut scratch = memory.scratch(s.x.len());

@@ -157,7 +157,7 @@ fn needs_contact_test<S: Simd>(
     tile: &Tile,
     (i, world, e): (usize, V3<S>, V3<S>),
 ) -> bool {
-    for pose in step.obstacles {
+    for pose in step.colliders {
         if colliders::broadphase_test(simd, pose, world).any_true() {
             return true;
         }
@@ -166,7 +166,7 @@ fn needs_contact_test<S: Simd>(
     // are not needed.
     if !tile.segment_contacts.is_empty() {
         let tolerance = segment_tolerance(simd, tile, i);
-        for pose in step.obstacles {
+        for pose in step.colliders {
             if segment_may_intersect(simd, pose, (world, e), tolerance).any_true() {
                 return true;
             }
@@ -215,7 +215,7 @@ fn project_particle<S: Simd>(
     // Summed relative to the root, as in `contact`. In world coordinates far from the origin, every sum would
     // lose precision.
     let in_world = |e: V3<S>| step.root.position + (at.x + e);
-    for pose in step.obstacles {
+    for pose in step.colliders {
         let world = in_world(e);
         let (distance, normal) = contact(simd, pose, world);
         let depth = (clearance - distance).max(0.0);

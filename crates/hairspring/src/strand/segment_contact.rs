@@ -64,7 +64,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
         old += V3::load(simd, &tile.state[i + 1][state::EDGE..]);
     }
     let (at, Surface { distance, normal, carried }) =
-        nearest_edge(simd, step.obstacles, (x + step.root.position, e), at);
+        nearest_edge(simd, step.colliders, (x + step.root.position, e), at);
     store(at, &mut tile.segment_contacts[outer][segment_contact::AT]);
     let gap = distance + segment_tolerance(simd, tile, outer);
 
@@ -129,17 +129,17 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
 #[inline(never)]
 fn nearest_edge<S: Simd>(
     simd: S,
-    obstacles: &[ColliderPose],
+    colliders: &[ColliderPose],
     (a, e): (V3<S>, V3<S>),
     at: F<S>,
 ) -> (F<S>, Surface<S>) {
     simd.vectorize(
         #[inline(always)]
         || {
-            let mut surface = nearest(simd, obstacles, e.mul_add(at, a));
+            let mut surface = nearest(simd, colliders, e.mul_add(at, a));
             let mut at = at;
             let whole = (F::splat(simd, 0.0), F::splat(simd, f32::MAX));
-            for pose in obstacles {
+            for pose in colliders {
                 if !has_straight_edges(pose) {
                     continue;
                 }

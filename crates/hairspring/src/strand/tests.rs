@@ -442,7 +442,7 @@ fn solve_substep<S: Simd>(
         root,
         second_order: false,
         touches: Mask::splat(simd, false),
-        obstacles: &[],
+        colliders: &[],
     };
     scratch.begin(simd, tile.state);
     precompute(simd, step.h, Stretching::Moderate, tile, scratch);

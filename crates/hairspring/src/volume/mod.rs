@@ -325,20 +325,20 @@ impl Volume {
     }
 
     /// Computes the accelerations of all points for an interval of `dt` [s] that has been measured. They
-    /// replace those of the last interval in `push` [m/s²], shape `[points]` of all tiles. `obstacles` are
+    /// replace those of the last interval in `push` [m/s²], shape `[points]` of all tiles. `colliders` are
     /// the colliders in the first substep of the interval, of `h` [s].
     pub fn compute_accelerations(
         &mut self,
         dt: f32,
         (roots, state): (&[RootRows], &[StateRows]),
         now: &Now,
-        obstacles: (&[ColliderPose], f32),
+        colliders: (&[ColliderPose], f32),
         push: &mut [[Row; 3]],
     ) {
         match self.settings.method {
             VolumeMethod::Off => {}
             VolumeMethod::Density => self.press(dt, &now.anchor),
-            VolumeMethod::Incompressible => self.project(dt, &now.anchor, obstacles),
+            VolumeMethod::Incompressible => self.project(dt, &now.anchor, colliders),
         }
         let tiles = Tiles { firsts: &self.firsts, roots, state, own: &self.own };
         let points = (&mut self.acceleration[..], push);
@@ -362,13 +362,13 @@ impl Volume {
     }
 
     /// Computes the acceleration that makes velocities free of divergence where hair is full.
-    fn project(&mut self, dt: f32, anchor: &RigidTransform, obstacles: (&[ColliderPose], f32)) {
+    fn project(&mut self, dt: f32, anchor: &RigidTransform, colliders: (&[ColliderPose], f32)) {
         let (field, rest, bounds, cell) = (&self.field, &self.rest, self.field.bounds, self.cell);
         let turn = Mat3::from_quat(anchor.rotation);
         let back = turn.transpose();
         let to_lattice = |n: usize, node: &[f32; 4]| {
             let place = anchor.point(bounds.place(n).as_vec3() * cell);
-            match solid(obstacles, place) {
+            match solid(colliders, place) {
                 Some(v) => (back * v, true),
                 None => (back * Vec3::new(node[0], node[1], node[2]), false),
             }
@@ -397,8 +397,8 @@ fn fill_ratio(fill: &[f32]) -> f64 {
 
 /// Returns the velocity of the collider that contains `place` [m] at the start of a substep of `h` [s], in
 /// world space [m/s].
-fn solid((obstacles, h): (&[ColliderPose], f32), place: Vec3) -> Option<Vec3> {
-    obstacles.iter().find_map(|o| {
+fn solid((colliders, h): (&[ColliderPose], f32), place: Vec3) -> Option<Vec3> {
+    colliders.iter().find_map(|o| {
         let local = o.start.0.transpose() * (place - o.start.1);
         (o.shape.distance(local) < 0.0).then(|| (o.end.0 * local + o.end.1 - place) / h)
     })

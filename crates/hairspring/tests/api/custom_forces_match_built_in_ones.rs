@@ -76,7 +76,7 @@ fn a_custom_wind_agrees() {
     let step = |hair: &mut Simulation, wind: Wind| {
         let roots = roots(&groom(10), REST);
         let air = Air { wind, ..Air::default() };
-        hair.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles: &[], air });
+        hair.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, colliders: &[], air });
     };
     let mut built_in = simulation(10, Material::default(), Solver::default());
     let mut custom = simulation(10, Material::default(), Solver::default());

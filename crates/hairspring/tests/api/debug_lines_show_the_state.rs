@@ -32,9 +32,9 @@ fn count(lines: &[DebugLine], kind: DebugLineKind) -> usize {
 /// The outline of one shape, turned and moved.
 fn outline(shape: ColliderShape, pose: RigidTransform) -> Vec<DebugLine> {
     let (simulation, roots) = hair(Solver::default());
-    let obstacles = [MovingCollider::new(shape, RigidTransform::default(), pose)];
+    let colliders = [MovingCollider::new(shape, RigidTransform::default(), pose)];
     let (anchor, air) = (RigidTransform::default(), Air::default());
-    let input = StepInput { dt: FRAME, anchor, roots: &roots, obstacles: &obstacles, air };
+    let input = StepInput { dt: FRAME, anchor, roots: &roots, colliders: &colliders, air };
     simulation.debug_lines(&input, DebugRenderMode::COLLIDERS)
 }
 
@@ -73,19 +73,19 @@ fn lines_follow_from_the_state() {
     let (mut simulation, roots) = hair(Solver { sag_free: false, ..Solver::default() });
     simulation.set_volume(&Volume { method: VolumeMethod::Density, ..Volume::default() });
     let ball = ColliderShape::Sphere { center: Vec3::new(0.0, -0.1, 0.0), radius: 0.05 };
-    let obstacles = [MovingCollider::at_rest(ball, RigidTransform::default()).with_user_data(9)];
+    let colliders = [MovingCollider::at_rest(ball, RigidTransform::default()).with_user_data(9)];
     let wind = Wind { velocity: Vec3::NEG_Z, ..Wind::default() };
     let air = Air { wind, ..Air::default() };
     let input =
-        StepInput { dt: FRAME, anchor: RigidTransform::default(), roots: &roots, obstacles: &obstacles, air };
+        StepInput { dt: FRAME, anchor: RigidTransform::default(), roots: &roots, colliders: &colliders, air };
     for _ in 0..60 {
         simulation.step(&input);
     }
     let lines = simulation.debug_lines(&input, DebugRenderMode::ALL);
     assert!(lines.iter().all(|line| line.a.is_finite() && line.b.is_finite()));
 
-    let contacts = simulation.contact_points(&obstacles);
-    let counts = simulation.contacts(&obstacles);
+    let contacts = simulation.contact_points(&colliders);
+    let counts = simulation.contacts(&colliders);
     assert_eq!(contacts.len(), counts.points + counts.segments);
     assert!(!contacts.is_empty());
     for contact in &contacts {
@@ -124,7 +124,7 @@ fn lines_follow_from_the_state() {
 fn each_mode_gives_its_own_lines() {
     let (mut simulation, roots) = hair(Solver::default());
     let anchor = RigidTransform::default();
-    let input = StepInput { dt: FRAME, anchor, roots: &roots, obstacles: &[], air: Air::default() };
+    let input = StepInput { dt: FRAME, anchor, roots: &roots, colliders: &[], air: Air::default() };
     simulation.step(&input);
     assert!(simulation.debug_lines(&input, DebugRenderMode::default()).is_empty());
     let segments = simulation.debug_lines(&input, DebugRenderMode::SEGMENTS);

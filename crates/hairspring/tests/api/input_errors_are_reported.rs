@@ -32,7 +32,7 @@ fn a_step_names_its_broken_input() {
     let (mut hair, roots) = hair();
     let (anchor, air) = (RigidTransform::default(), Air::default());
     let before = points(&hair);
-    let input = StepInput { dt: FRAME, anchor, roots: &roots, obstacles: &[], air };
+    let input = StepInput { dt: FRAME, anchor, roots: &roots, colliders: &[], air };
     let bad_roots = [roots[0], broken()];
     let ball = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.01 };
     let colliders =
@@ -44,7 +44,7 @@ fn a_step_names_its_broken_input() {
         (StepInput { dt: f32::INFINITY, ..input }, StepError::Dt(f32::INFINITY)),
         (StepInput { anchor: broken(), ..input }, StepError::Anchor),
         (StepInput { roots: &bad_roots, ..input }, StepError::Root(1)),
-        (StepInput { obstacles: &colliders, ..input }, StepError::Collider(1)),
+        (StepInput { colliders: &colliders, ..input }, StepError::Collider(1)),
         (StepInput { air: Air { wind, ..air }, ..input }, StepError::Wind),
     ] {
         assert_eq!(hair.try_step(&input), Err(error));
@@ -72,7 +72,7 @@ fn a_step_with_numbers_that_are_not_finite_does_not_panic() {
         let air = Air { wind, sources: &sources, turbulence, ..Air::default() };
         let (mut hair, roots) = hair();
         let anchor = RigidTransform::default();
-        let input = StepInput { dt: FRAME, anchor, roots: &roots, obstacles: &[], air: Air::default() };
+        let input = StepInput { dt: FRAME, anchor, roots: &roots, colliders: &[], air: Air::default() };
         let tools = [
             Manipulator::Grab(Grab { center: at, radius: value, pull: value, damping: value }),
             Manipulator::Comb(Comb { a: at, b: Vec3::ZERO, radius: value, grip: value, friction: value }),
@@ -89,12 +89,12 @@ fn a_step_with_numbers_that_are_not_finite_does_not_panic() {
         for input in [
             StepInput { anchor: pose, ..input },
             StepInput { roots: &[pose, roots[1]], ..input },
-            StepInput { obstacles: &colliders, ..input },
+            StepInput { colliders: &colliders, ..input },
             StepInput { air, ..input },
         ] {
             hair.step(&input);
-            hair.contacts(input.obstacles);
-            hair.measure(input.obstacles);
+            hair.contacts(input.colliders);
+            hair.measure(input.colliders);
             let lines = hair.debug_lines(&input, DebugRenderMode::ALL);
             assert!(lines.iter().all(|line| line.a.is_finite() && line.b.is_finite()));
         }
@@ -124,7 +124,7 @@ fn settings_out_of_range_do_not_panic() {
             let air = Air { wind, ..Air::default() };
             let anchor = RigidTransform::default();
             for _ in 0..3 {
-                hair.step(&StepInput { dt: FRAME, anchor, roots: &roots, obstacles: &[], air });
+                hair.step(&StepInput { dt: FRAME, anchor, roots: &roots, colliders: &[], air });
             }
         }
     }

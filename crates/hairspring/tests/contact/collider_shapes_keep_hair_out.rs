@@ -83,9 +83,9 @@ fn a_shape_swept_through_a_curtain_keeps_hair_out() {
         };
         let (mut deepest, mut longest, mut pushed) = (0.0f32, 0.0f64, 0.0f32);
         for frame in 0..400 {
-            let obstacles = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
-            step(&mut simulation, REST, &roots, &obstacles);
-            let measure = simulation.measure(&obstacles);
+            let colliders = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
+            step(&mut simulation, REST, &roots, &colliders);
+            let measure = simulation.measure(&colliders);
             assert_eq!(measure.non_finite, 0, "{name}, {model:?}, frame {frame}");
             deepest = deepest.max(measure.max_depth as f32);
             longest = longest.max(measure.stretch_max);
@@ -121,16 +121,16 @@ fn play(
     mut check: impl FnMut(&[Vec3], f64),
 ) {
     let roots = roots(groom, REST);
-    let obstacles = [MovingCollider::at_rest(shape.clone(), REST)];
+    let colliders = [MovingCollider::at_rest(shape.clone(), REST)];
     let mut simulation = Simulation::builder(groom.clone())
         .solver(Solver { sag_free: false, ..Solver::default() })
         .gravity(gravity)
-        .colliders_at_rest(&[obstacles[0].end_pose()])
+        .colliders_at_rest(&[colliders[0].end_pose()])
         .build()
         .unwrap();
     for _ in 0..frames {
-        step(&mut simulation, REST, &roots, &obstacles);
-        check(&points(&simulation), simulation.measure(&obstacles).max_depth);
+        step(&mut simulation, REST, &roots, &colliders);
+        check(&points(&simulation), simulation.measure(&colliders).max_depth);
     }
 }
 

@@ -49,8 +49,8 @@ impl Slope {
     /// Simulates `frames` frames while the slope moves by `motion` in each [m]; returns all points.
     fn play(&mut self, frames: usize, motion: Vec3) -> Vec<Vec3> {
         let shape = ColliderShape::Plane { point: Vec3::ZERO, normal: Vec3::Y };
-        let obstacles = [MovingCollider::new(shape, REST, translation(motion))];
-        (0..frames).for_each(|_| _ = step(&mut self.simulation, REST, &self.roots, &obstacles));
+        let colliders = [MovingCollider::new(shape, REST, translation(motion))];
+        (0..frames).for_each(|_| _ = step(&mut self.simulation, REST, &self.roots, &colliders));
         points(&self.simulation)
     }
 }

@@ -33,12 +33,12 @@ fn land(model: Model, contact: Response) -> [f32; 3] {
         .build()
         .unwrap();
     let shape = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };
-    let obstacles = [MovingCollider::at_rest(shape, REST)];
+    let colliders = [MovingCollider::at_rest(shape, REST)];
     let mut deepest = 0.0f32;
     let mut last = [0.0f32; 2];
     for frame in 0..FRAMES[0] {
-        step(&mut simulation, REST, &roots, &obstacles);
-        let measure = simulation.measure(&obstacles);
+        step(&mut simulation, REST, &roots, &colliders);
+        let measure = simulation.measure(&colliders);
         assert_eq!(measure.non_finite, 0);
         assert!(measure.stretch_max < 0.011, "{model:?}, {contact:?}: a segment is too long: {measure:?}");
         deepest = deepest.max(measure.max_depth as f32);

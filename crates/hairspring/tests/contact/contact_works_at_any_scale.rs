@@ -66,9 +66,9 @@ fn fall(shape: &ColliderShape, s: f32) -> (Vec<Vec3>, f32) {
             let phase = 0.1 * frame as f32;
             translation(Vec3::Z * (0.01 * s * (1.0 - phase.cos())))
         };
-        let obstacles = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
-        step(&mut simulation, REST, &roots, &obstacles);
-        let measure = simulation.measure(&obstacles);
+        let colliders = [MovingCollider::new(shape.clone(), at(frame), at(frame + 1))];
+        step(&mut simulation, REST, &roots, &colliders);
+        let measure = simulation.measure(&colliders);
         assert_eq!(measure.non_finite, 0);
         deepest = deepest.max(measure.max_depth as f32);
     }

@@ -62,8 +62,8 @@ fn hair_stays_in_front_of_a_fast_collider() {
                 let (mut z, end) = (-0.06f32, 0.14);
                 while z < end {
                     let next = (z + speed * dt).min(end);
-                    let obstacles = [MovingCollider::new(rod(radius), at(z), at(next))];
-                    step_by(&mut simulation, dt, REST, &roots, &obstacles);
+                    let colliders = [MovingCollider::new(rod(radius), at(z), at(next))];
+                    step_by(&mut simulation, dt, REST, &roots, &colliders);
                     z = next;
                     let through = if z > radius { passed(&simulation, y, z) } else { 0 };
                     assert_eq!(through, 0, "{what}, {model:?}, {dt} s: strands are behind it at {z} m");
@@ -80,11 +80,11 @@ fn only_fast_thin_colliders_near_hair_shorten_substeps() {
         // Hair is at rest, because fast hair near a thin body also causes shorter substeps.
         let (mut simulation, mut roots) = curtain(Model::Auto);
         let place = |translation| RigidTransform { translation, rotation: turned };
-        let obstacles = [MovingCollider::new(shape, place(start), place(end))];
+        let colliders = [MovingCollider::new(shape, place(start), place(end))];
         for root in &mut roots {
             root.translation = anchor.point(Vec3::new(root.translation.x, 0.0, 0.0));
         }
-        step(&mut simulation, anchor, &roots, &obstacles).substeps
+        step(&mut simulation, anchor, &roots, &colliders).substeps
     };
     let still = Quat::IDENTITY;
     let below = Vec3::NEG_Y * 0.1;

@@ -39,12 +39,12 @@ fn speed_at_rest(
         .solver(Solver { sag_free: false, ..Solver::default() })
         .build()
         .unwrap();
-    let obstacles = [MovingCollider::at_rest(shape.clone(), REST)];
+    let colliders = [MovingCollider::at_rest(shape.clone(), REST)];
     let mut fastest = 0.0f64;
     for frame in 0..60 * seconds {
-        step(&mut simulation, REST, &roots, &obstacles);
+        step(&mut simulation, REST, &roots, &colliders);
         if frame >= 60 * (seconds - 1) {
-            fastest = fastest.max(simulation.measure(&obstacles).speed_max);
+            fastest = fastest.max(simulation.measure(&colliders).speed_max);
         }
     }
     (fastest * 1e3, points(&simulation).iter().map(|p| p.y).fold(0.0, f32::min))

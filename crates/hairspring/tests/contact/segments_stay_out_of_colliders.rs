@@ -47,9 +47,9 @@ fn hair_of(material: &Material, solver: Solver, rest: &[ColliderPose]) -> (Simul
     (simulation, roots)
 }
 
-fn step(simulation: &mut Simulation, roots: &[RigidTransform], obstacles: &[MovingCollider]) -> Measure {
-    hairspring_test::step(simulation, REST, roots, obstacles);
-    let measure = simulation.measure(obstacles);
+fn step(simulation: &mut Simulation, roots: &[RigidTransform], colliders: &[MovingCollider]) -> Measure {
+    hairspring_test::step(simulation, REST, roots, colliders);
+    let measure = simulation.measure(colliders);
     assert_eq!(measure.non_finite, 0);
     measure
 }
@@ -94,15 +94,15 @@ fn hair_rests_on_edges() {
     let mut failures = Vec::new();
     for (name, shape) in shapes() {
         for model in Model::ALL {
-            let obstacles = still(&shape);
+            let colliders = still(&shape);
             let (mut simulation, roots) = hair(model, &[]);
             let (mut landing, mut settled) = (Measure::default(), Measure::default());
             for _ in 0..420 {
-                landing = worst(landing, step(&mut simulation, &roots, &obstacles));
+                landing = worst(landing, step(&mut simulation, &roots, &colliders));
             }
             let before = points(&simulation);
             for _ in 0..60 {
-                settled = worst(settled, step(&mut simulation, &roots, &obstacles));
+                settled = worst(settled, step(&mut simulation, &roots, &colliders));
             }
             let after = points(&simulation);
             let crept = farthest(&after, &before);
@@ -169,11 +169,11 @@ fn ridges_and_creases_keep_segments_out() {
     let mut failures = Vec::new();
     for (name, shape) in shapes {
         for model in Model::ALL {
-            let obstacles = still(&shape);
+            let colliders = still(&shape);
             let (mut simulation, roots) = hair(model, &[]);
             let (mut all, mut inside) = (Measure::default(), 0);
             for _ in 0..300 {
-                let measure = step(&mut simulation, &roots, &obstacles);
+                let measure = step(&mut simulation, &roots, &colliders);
                 inside += measure.inside_points;
                 all = worst(all, measure);
             }
@@ -258,8 +258,8 @@ fn hair_authored_across_a_shape_stays_in_place() {
         let rigid = REST.matrix();
         let (mut simulation, roots) = hair(model, &[ColliderPose::new(shape.clone(), rigid, rigid, 1.0)]);
         let (mut free, _) = hair(model, &[]);
-        let obstacles = still(&shape);
-        step(&mut simulation, &roots, &obstacles);
+        let colliders = still(&shape);
+        step(&mut simulation, &roots, &colliders);
         step(&mut free, &roots, &[]);
         let moved = farthest(&points(&simulation), &points(&free));
         assert!(moved < 1e-3, "{model:?}: the shape moved hair by {moved} m");
@@ -270,11 +270,11 @@ fn hair_authored_across_a_shape_stays_in_place() {
 fn distant_colliders_change_nothing() {
     for (name, shape) in shapes() {
         for model in Model::ALL {
-            let obstacles = [MovingCollider::at_rest(shape.clone(), translation(Vec3::Y * 3.0))];
+            let colliders = [MovingCollider::at_rest(shape.clone(), translation(Vec3::Y * 3.0))];
             let (mut simulation, roots) = hair(model, &[]);
             let (mut free, _) = hair(model, &[]);
             for _ in 0..30 {
-                step(&mut simulation, &roots, &obstacles);
+                step(&mut simulation, &roots, &colliders);
                 step(&mut free, &roots, &[]);
             }
             assert_eq!(
@@ -292,14 +292,14 @@ fn segments_are_not_tested_at_large_round_bodies() {
     let ball =
         |radius: f32| still(&ColliderShape::Sphere { center: Vec3::new(0.05, -radius - 0.01, 0.0), radius });
     for model in Model::ALL {
-        let lie = |obstacles: &[MovingCollider]| {
+        let lie = |colliders: &[MovingCollider]| {
             let lie = |segments: bool| {
                 let (mut simulation, roots) = hair_of(
                     &Material { model, ..Material::default() },
                     Solver { segment_contacts: segments, ..Solver::default() },
                     &[],
                 );
-                (0..60).for_each(|_| _ = step(&mut simulation, &roots, obstacles));
+                (0..60).for_each(|_| _ = step(&mut simulation, &roots, colliders));
                 points(&simulation)
             };
             (lie(true), lie(false))
@@ -315,12 +315,12 @@ fn segments_are_not_tested_at_large_round_bodies() {
 fn stretchable_segments_are_tested_at_any_ball() {
     // The ball is large enough for segments of 2 cm. But the hair is as soft as rubber, and the Verlet
     // method does not prevent stretch.
-    let obstacles = still(&ColliderShape::Sphere { center: Vec3::new(0.05, -0.19, 0.0), radius: 0.18 });
+    let colliders = still(&ColliderShape::Sphere { center: Vec3::new(0.05, -0.19, 0.0), radius: 0.18 });
     let gum = Material { model: Model::Curvature, young: 1e4, ..Material::default() };
     let fall = |integrator: Integrator, segments: bool| {
         let solver = Solver { segment_contacts: segments, integrator, ..Solver::default() };
         let (mut simulation, roots) = hair_of(&gum, solver, &[]);
-        let longer = |_| step(&mut simulation, &roots, &obstacles).stretch_max;
+        let longer = |_| step(&mut simulation, &roots, &colliders).stretch_max;
         let longest = (0..60).map(longer).fold(0.0, f64::max);
         (points(&simulation), longest)
     };
@@ -345,8 +345,8 @@ fn segment_contacts_are_reset_without_colliders_nearby() {
         let meet_again = |between: &[MovingCollider], taken_over: bool| {
             let (mut simulation, roots) = hair(model, &[]);
             // The time in between is so short that a stale contact would act again.
-            for (obstacles, frames) in [(&still(&rod)[..], 60), (between, 1), (&still(&rod)[..], 20)] {
-                (0..frames).for_each(|_| _ = step(&mut simulation, &roots, obstacles));
+            for (colliders, frames) in [(&still(&rod)[..], 60), (between, 1), (&still(&rod)[..], 20)] {
+                (0..frames).for_each(|_| _ = step(&mut simulation, &roots, colliders));
                 if taken_over {
                     let (mut next, _) = hair(model, &[]);
                     next.take_over(&simulation);

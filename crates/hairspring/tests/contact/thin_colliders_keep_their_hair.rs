@@ -42,10 +42,10 @@ fn curtain(strands: usize) -> (Simulation, Vec<RigidTransform>) {
     hair((0..strands).map(root), Vec3::NEG_Y, true)
 }
 
-fn step(simulation: &mut Simulation, roots: &[RigidTransform], obstacle: MovingCollider) {
-    let obstacles = [obstacle];
-    hairspring_test::step(simulation, REST, roots, &obstacles);
-    assert_eq!(simulation.measure(&obstacles).non_finite, 0);
+fn step(simulation: &mut Simulation, roots: &[RigidTransform], collider: MovingCollider) {
+    let colliders = [collider];
+    hairspring_test::step(simulation, REST, roots, &colliders);
+    assert_eq!(simulation.measure(&colliders).non_finite, 0);
 }
 
 /// Counts the strands that a body at height `y` and position `z` holds back: from the root on, they first

@@ -41,7 +41,7 @@ fn with_every_model_and_quality() {
                     let x = 0.02 * (std::f32::consts::TAU * 2.0 * frame as f32 * FRAME).sin();
                     let head = translation(Vec3::X * x);
                     let (roots, air) = ([head; 2], Air::default());
-                    let input = StepInput { dt: FRAME, anchor: head, roots: &roots, obstacles: &[], air };
+                    let input = StepInput { dt: FRAME, anchor: head, roots: &roots, colliders: &[], air };
                     let resets = simulation.step(&input).reset_strands;
                     assert!(
                         explicit || resets == 0,

@@ -31,7 +31,7 @@ fn blown(side: usize, spacing: f32, hairs: f32, sheltered: bool) -> [f32; 2] {
     let wind = Wind { velocity: Vec3::X, ..Wind::default() };
     for _ in 0..60 {
         let air = Air { wind, ..Air::default() };
-        simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles: &[], air });
+        simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, colliders: &[], air });
     }
     let points = points(&simulation);
     let mut sums = [(0.0, 0.0f32); 2];

@@ -1,7 +1,7 @@
 //! Promise: a tie gathers the strands around it smoothly, and keeps them in its ring through a shake, hops
 //! and a jump.
 //!
-//! A curtain of hair hangs in a wide circle. A ring attached to its anchor gathers it, around obstacles.
+//! A curtain of hair hangs in a wide circle. A ring attached to its anchor gathers it, around colliders.
 //! Bound points stay within the ring's radius plus the lag of a closed form: (g + a)/ω² times the ratio of
 //! the mass they carry to their own.
 
@@ -35,7 +35,7 @@ struct Curtain {
     simulation: Simulation,
     groom: Arc<Groom>,
     points: Vec<Vec3>,
-    obstacles: Vec<MovingCollider>,
+    colliders: Vec<MovingCollider>,
 }
 
 impl Curtain {
@@ -49,11 +49,11 @@ impl Curtain {
         let groom = Arc::new(Groom::from_strands((0..STRANDS).map(strand), 40e-6));
         let material = Material { model, ..Material::default() };
         let simulation = Simulation::builder(groom.clone()).materials(&[material]).build().unwrap();
-        Self { simulation, points: groom.points.clone(), groom, obstacles: Vec::new() }
+        Self { simulation, points: groom.points.clone(), groom, colliders: Vec::new() }
     }
 
     fn step(&mut self, head: RigidTransform) {
-        step(&mut self.simulation, head, &roots(&self.groom, head), &self.obstacles);
+        step(&mut self.simulation, head, &roots(&self.groom, head), &self.colliders);
         self.points = points(&self.simulation);
     }
 }
@@ -168,14 +168,14 @@ fn hair_is_gathered_around_a_body() {
     let mut curtain = Curtain::new(Model::Curvature);
     // The ball is on the straight line from the curtain to the ring.
     let ball = ColliderShape::Sphere { center: Vec3::new(0.07, -0.1, 0.0), radius: 0.028 };
-    curtain.obstacles = vec![MovingCollider::at_rest(ball, REST)];
+    curtain.colliders = vec![MovingCollider::at_rest(ball, REST)];
     let ring = Tie { center: Vec3::new(0.1, -0.1, 0.0), axis: Vec3::X, reach: 0.2, ..RING };
     let id = curtain.simulation.add_manipulator(Manipulator::Tie(ring), REST);
     let before = curtain.simulation.attached_points(id).count();
     let (mut deepest, mut lost) = (0.0f64, 0);
     for _ in 0..150 {
         curtain.step(REST);
-        let measure = curtain.simulation.measure(&curtain.obstacles);
+        let measure = curtain.simulation.measure(&curtain.colliders);
         deepest = deepest.max(measure.max_depth);
         lost = before - curtain.simulation.attached_points(id).count();
     }

@@ -79,16 +79,16 @@ fn blown(
     groom: &Arc<Groom>,
     air: Air,
     occlusion: &WindOcclusion,
-    obstacles: &[MovingCollider],
+    colliders: &[MovingCollider],
     frames: u32,
 ) -> Vec<Vec3> {
-    let poses: Vec<ColliderPose> = obstacles.iter().map(MovingCollider::end_pose).collect();
+    let poses: Vec<ColliderPose> = colliders.iter().map(MovingCollider::end_pose).collect();
     let mut simulation = Simulation::builder(groom.clone()).colliders_at_rest(&poses).build().unwrap();
     simulation.set_wind_occlusion(occlusion);
     let roots = roots(groom, REST);
     for frame in 0..frames {
         let air = Air { time: frame as f64 / 60.0, ..air };
-        simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, obstacles, air });
+        simulation.step(&StepInput { dt: FRAME, anchor: REST, roots: &roots, colliders, air });
     }
     points(&simulation)
 }

@@ -102,8 +102,8 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
             root,
             moved,
             second_order,
-            touches: touching(simd, frame, &substep.obstacles, tile),
-            obstacles: &substep.obstacles,
+            touches: touching(simd, frame, &substep.colliders, tile),
+            colliders: &substep.colliders,
         };
         let finish = I::advance(simd, frame, &step, tile, scratch);
         post_solve(simd, M::STRIDE, &finish, &step, tile, scratch);
@@ -167,9 +167,9 @@ const TOUCHED: f32 = 0.1;
 /// A contact may push a point away, and the point soon returns. In between, its motion is damped as in
 /// contact. Otherwise it would gain speed from each bounce.
 #[inline(always)]
-fn touching<S: Simd>(simd: S, frame: &FrameContext, obstacles: &[ColliderPose], tile: &mut Tile) -> Mask<S> {
+fn touching<S: Simd>(simd: S, frame: &FrameContext, colliders: &[ColliderPose], tile: &mut Tile) -> Mask<S> {
     let mut most = F::<S>::splat(simd, if frame.meets { 1.0 } else { 0.0 });
-    if !obstacles.is_empty() {
+    if !colliders.is_empty() {
         for rows in tile.state.iter() {
             most = most.max(load(simd, &rows[state::NORMAL_FORCE]));
         }
