@@ -65,7 +65,7 @@ impl WindOcclusion {
 }
 
 /// Maximum number of steps of a ray.
-const MOST_STEPS: usize = 256;
+const MAX_STEPS: usize = 256;
 
 /// Optical depth at which the ray stops because no wind is left.
 const DEEP: f32 = 8.0;
@@ -126,7 +126,7 @@ fn depth(
 ) -> f32 {
     let (mut at, mut way, mut depth) = (from, 0.0, 0.0);
     let calm = CALM * air.steady(from).length();
-    for _ in 0..MOST_STEPS {
+    for _ in 0..MAX_STEPS {
         let wind = air.steady(at);
         let speed = wind.length();
         // Written so that a NaN ends the loop.

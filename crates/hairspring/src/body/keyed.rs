@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn what_goes_by_itself_goes_beside_the_body() {
+    fn a_combined_clip_has_one_more_joint_for_each_prop() {
         let way = |end: f32| {
             let key = |time: f32, x: f32| Key { time, position: Vec3::X * x, rotation: Quat::IDENTITY };
             keyframe_clip(&[key(0.0, 0.0), key(end, end)], Vec3::ZERO)

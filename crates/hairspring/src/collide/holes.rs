@@ -96,7 +96,7 @@ mod tests {
 
     /// A box of 10 cm with a slit of 3 mm in its far face. One layer of nodes passes through the slit.
     #[test]
-    fn what_is_behind_a_slit_is_outside() {
+    fn points_behind_a_slit_are_outside() {
         let at = |x: f32, y: f32, z: f32| 0.1 * Vec3::new(x, y, z);
         let (low, high) = (0.51, 0.54);
         let quads = [

@@ -10,7 +10,7 @@ use glam::{Mat3, Vec3};
 const LOOK: f32 = 1.5;
 
 /// Maximum number of samples [1].
-const MOST_LOOKS: u32 = 8;
+const MAX_LOOKUPS: u32 = 8;
 
 /// Length up to which a segment is sampled only at its middle, in cells [1].
 const LONG: f32 = 2.0;
@@ -199,7 +199,7 @@ impl ColliderPose {
     ) -> Mask<S> {
         // Use as many samples as the longest of the eight segments needs.
         let mut looks = 1;
-        while looks < MOST_LOOKS
+        while looks < MAX_LOOKUPS
             && size.simd_gt(F::splat(simd, (cell * LONG.max(looks as f32 * LOOK)).powi(2))).any_true()
         {
             looks += 1;

@@ -3,7 +3,7 @@
 use super::{
     SignedDistanceField,
     lattice::{Lattice, MAX_NODES},
-    sdf::BEYOND,
+    sdf::PADDING,
 };
 use glam::{UVec3, Vec3};
 
@@ -85,7 +85,7 @@ impl SignedDistanceField {
         if let Some(bad) = samples.iter().position(|d| !d.is_finite()) {
             return Err(FieldError::NotFinite(bad));
         }
-        samples.resize(nodes + BEYOND, f32::MAX);
+        samples.resize(nodes + PADDING, f32::MAX);
         let mut field = Self::default();
         field.lattice = Lattice::new(origin, cell, size);
         field.distances = samples;

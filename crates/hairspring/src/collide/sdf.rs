@@ -11,7 +11,7 @@ use glam::{UVec3, Vec3};
 use std::sync::Arc;
 
 /// Padding after the nodes' distances, so that four values can be loaded starting at the last node but one.
-pub(super) const BEYOND: usize = 2;
+pub(super) const PADDING: usize = 2;
 
 /// Signed distances at the nodes of a regular grid, negative inside, with trilinear interpolation.
 ///
@@ -21,7 +21,7 @@ pub(super) const BEYOND: usize = 2;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SignedDistanceField {
     pub(super) lattice: Lattice,
-    /// Distance at each node [m], followed by [`BEYOND`] values of padding.
+    /// Distance at each node [m], followed by [`PADDING`] values of padding.
     pub(super) distances: Vec<f32>,
     /// Index of the nearest triangle for each node of the band; unspecified for other nodes. One for each
     /// node.
@@ -73,7 +73,7 @@ impl SignedDistanceField {
         triangles: &[[u32; 3]],
     ) {
         self.lattice = lattice;
-        self.distances.resize(lattice.nodes() + BEYOND, 0.0);
+        self.distances.resize(lattice.nodes() + PADDING, 0.0);
         self.distances[lattice.nodes()..].fill(f32::MAX);
         self.nearest.resize(lattice.nodes(), 0);
         self.triangles.clear();
@@ -91,7 +91,7 @@ impl SignedDistanceField {
         self.moved.clear();
     }
 
-    /// Returns the bounding sphere of the whole grid: center and radius [m]. Nothing outside of it is inside
+    /// Returns the bounding sphere of the closed grid: center and radius [m]. Nothing outside of it is inside
     /// the surface.
     pub fn bounds(&self) -> (Vec3, f32) {
         let half = (self.lattice.size - UVec3::ONE).as_vec3() * (0.5 * self.lattice.cell);
@@ -293,8 +293,8 @@ pub(super) mod tests {
     use glam::Quat;
     use std::sync::Arc;
 
-    /// Balls of many triangles, rotated and overlapping; `whole`: without holes.
-    pub fn balls(seed: u32, whole: bool) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+    /// Balls of many triangles, rotated and overlapping; `closed`: without holes.
+    pub fn balls(seed: u32, closed: bool) -> (Vec<Vec3>, Vec<[u32; 3]>) {
         let hash = |k: u32| ((seed * 977 + k).wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32;
         let (mut positions, mut triangles) = (Vec::new(), Vec::new());
         for ball in 0..3 {
@@ -313,7 +313,7 @@ pub(super) mod tests {
                 for c in 0..columns {
                     let i = |r: u32, c: u32| first + r * columns + c % columns;
                     let [a, b, d, e] = [i(r, c), i(r, c + 1), i(r + 1, c), i(r + 1, c + 1)];
-                    if whole || hash(r * 31 + c + 40) > 0.1 {
+                    if closed || hash(r * 31 + c + 40) > 0.1 {
                         triangles.extend([[a, b, e], [a, e, d]]);
                     }
                 }
@@ -342,15 +342,15 @@ pub(super) mod tests {
     #[test]
     fn cells_are_marked_that_hold_a_place_inside_and_no_others() {
         for seed in 0..12 {
-            for whole in [true, false] {
-                let (positions, triangles) = balls(seed, whole);
+            for closed in [true, false] {
+                let (positions, triangles) = balls(seed, closed);
                 let mut grid = voxelize(&positions, &triangles, 0.003 + 0.0003 * seed as f32);
-                assert_marked(&grid, &format!("balls {seed}, whole: {whole}"));
+                assert_marked(&grid, &format!("balls {seed}, closed: {closed}"));
                 // A deforming one, in a box that cuts through it.
                 let now: Vec<Vec3> = positions.iter().map(|p| *p * (1.0 + 3.0 * p.y)).collect();
                 let within = Some((Vec3::splat(-0.01), Vec3::new(0.06, 0.2, 0.07)));
                 Voxelizer::default().update(&mut grid, &now, Some(&positions), &triangles, within, 0.003);
-                assert_marked(&grid, &format!("deforming balls {seed}, whole: {whole}"));
+                assert_marked(&grid, &format!("deforming balls {seed}, closed: {closed}"));
             }
         }
     }
@@ -360,7 +360,7 @@ pub(super) mod tests {
     fn the_middle_of_a_wall_has_a_way_out() {
         let grid = SignedDistanceField {
             lattice: Lattice::new(Vec3::ZERO, 0.01, UVec3::new(3, 3, 3)),
-            distances: vec![-0.02; 27 + BEYOND],
+            distances: vec![-0.02; 27 + PADDING],
             nearest: vec![0; 27],
             ..SignedDistanceField::default()
         };
@@ -379,7 +379,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn what_is_skipped_changes_no_bit() {
+    fn skipped_cells_change_no_bit() {
         let strands = (0..24).map(|s| {
             let root = Vec3::new(0.0, 0.2, 0.004 * s as f32);
             (0..20).map(move |i| root - Vec3::Y * (0.012 * i as f32)).collect::<Vec<_>>()
@@ -392,7 +392,7 @@ pub(super) mod tests {
         let (positions, triangles) = balls(3, true);
         let grid = voxelize(&positions, &triangles, 0.004);
         let all_cells = SignedDistanceField { inside: Vec::new(), ..grid.clone() };
-        let [skipped, looked_at] = [grid, all_cells].map(|grid| {
+        let [skipped, unskipped] = [grid, all_cells].map(|grid| {
             let shape = ColliderShape::Field(Arc::new(grid));
             let gravity = Vec3::new(0.0, -9.81, 0.0);
             let (material, solver) = (Material::default(), Solver { sag_free: false, ..Solver::default() });
@@ -428,6 +428,6 @@ pub(super) mod tests {
             assert!(touched > 100, "{touched} points in contact");
             points
         });
-        assert_eq!(skipped, looked_at);
+        assert_eq!(skipped, unskipped);
     }
 }

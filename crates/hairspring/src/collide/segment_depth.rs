@@ -403,7 +403,7 @@ mod tests {
     /// The few samples find the same cuts as dense sampling, except for grazing ones. Covers round bodies,
     /// and walls, ridges and creases of every angle.
     #[test]
-    fn what_cuts_between_two_ends_that_are_outside_is_found() {
+    fn a_cut_between_two_outside_ends_is_found() {
         let (mut cuts, mut missed, mut worst) = (0, 0, [0f32; 2]);
         for seed in 0..24u32 {
             let mut bits = u64::from(seed);

@@ -84,7 +84,7 @@ impl Bonds {
         let stiffness = omega * omega;
         let farthest = FIRMEST / stiffness.max(1e-6);
         let roots = strand.roots();
-        let root_way = roots[1].translation - roots[0].translation;
+        let root_displacement = roots[1].translation - roots[0].translation;
         let dt = strand.frame.dt;
         let (mut x, mut reached) = (Vec3::ZERO, 0);
         for bond in self.0[first..].iter().take_while(|b| b.strand == number) {
@@ -96,12 +96,12 @@ impl Bonds {
             let [from, to] = [0, 1].map(|k| poses[k].point(bond.at(shares[k])));
             let from = bodies.out(from, clearance) - roots[0].translation;
             let to = bodies.out_at_end(to, clearance) - roots[1].translation;
-            let way = (to - from).clamp_length_max(FASTEST * dt);
+            let displacement = (to - from).clamp_length_max(FASTEST * dt);
             let from = x + (from - x).clamp_length_max(farthest);
-            strand.add_position_spring(bond.point as usize, [from, from + way], stiffness);
+            strand.add_position_spring(bond.point as usize, [from, from + displacement], stiffness);
             strand.add_velocity_drag(
                 bond.point as usize,
-                (way + root_way) / dt,
+                (displacement + root_displacement) / dt,
                 2.0 * spring.damping * omega,
             );
         }

@@ -157,10 +157,19 @@ pub(crate) struct LineCharge<'a> {
     pub profile: &'a [f32],
 }
 
-impl LineCharge<'_> {
-    /// Charge per length at the fraction `along` of the strand's length [C/m].
-    pub fn at(&self, along: f32) -> f32 {
-        self.per_length * profile_at(self.profile, f64::from(along)) as f32
+impl<'p> LineCharge<'p> {
+    /// The charge per length [C/m] and the length of hair [m] of each point of the strand.
+    pub fn at_points<'s, 'a>(
+        &'s self,
+        strand: &StrandView<'a>,
+    ) -> impl Iterator<Item = (f32, f32)> + use<'s, 'a, 'p> {
+        let total: f32 = strand.lengths().sum();
+        let mut before = 0.0;
+        strand.lengths().map(move |length| {
+            let fraction = (before + 0.5 * length) / total;
+            before += length;
+            (self.per_length * profile_at(self.profile, f64::from(fraction)) as f32, length)
+        })
     }
 }
 
@@ -174,15 +183,12 @@ pub(crate) struct Charges<'a> {
 impl Charges<'_> {
     /// Applies the forces to a strand.
     pub fn add(&self, charge: &LineCharge, strand: &mut StrandView) {
-        let whole: f32 = (0..strand.point_count()).map(|i| strand.length(i)).sum();
-        let mut before = strand.length(0) + strand.length(1);
         let [start, end] = strand.roots().map(|root| root.translation);
         let explicit = 1.0 / (strand.frame.dt * strand.frame.dt);
-        for (i, (x, _)) in strand.points().enumerate().skip(2) {
+        let charges = charge.at_points(strand);
+        for (i, ((x, _), (per_length, length))) in strand.points().zip(charges).enumerate().skip(2) {
             // Acceleration in a field of 1 V/m.
-            let length = strand.length(i);
-            let per_field = charge.at((before + 0.5 * length) / whole) * length / strand.mass(i);
-            before += length;
+            let per_field = per_length * length / strand.mass(i);
             for ball in self.balls {
                 let d = start + x - ball.centers[0];
                 let r = d.length().max(ball.radius);

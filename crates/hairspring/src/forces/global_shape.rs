@@ -16,7 +16,7 @@ use glam::Vec3;
 /// `scale`.
 pub(crate) fn apply(shape: &GlobalShape, scale: f32, authored: &[Vec3], strand: &mut StrandView) {
     let [start, end] = strand.roots();
-    let way = end.translation - start.translation;
+    let displacement = end.translation - start.translation;
     let inv_dt = 1.0 / strand.frame.dt;
     let whole: f32 = authored.windows(2).map(|w| w[0].distance(w[1])).sum();
     let mut along = authored[0].distance(authored[1]);
@@ -26,6 +26,6 @@ pub(crate) fn apply(shape: &GlobalShape, scale: f32, authored: &[Vec3], strand: 
         let omega = std::f32::consts::TAU * shape.pull * scale * curve;
         let [from, to] = [start, end].map(|root| root.rotation * (*p - authored[0]));
         strand.add_position_spring(i, [from, to], omega * omega);
-        strand.add_velocity_drag(i, (way + (to - from)) * inv_dt, 2.0 * shape.damping * omega);
+        strand.add_velocity_drag(i, (displacement + (to - from)) * inv_dt, 2.0 * shape.damping * omega);
     }
 }

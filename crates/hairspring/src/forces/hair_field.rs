@@ -104,12 +104,7 @@ impl HairField {
     /// Distributes the charge of a strand to the lattice.
     fn load(&self, charge: &LineCharge, strand: &StrandView) {
         let root = strand.roots()[0].translation;
-        let whole: f32 = (0..strand.point_count()).map(|i| strand.length(i)).sum();
-        let mut before = 0.0;
-        for (i, (x, _)) in strand.points().enumerate() {
-            let length = strand.length(i);
-            let per_length = charge.at((before + 0.5 * length) / whole);
-            before += length;
+        for ((x, _), (per_length, length)) in strand.points().zip(charge.at_points(strand)) {
             let electrons = f64::from(per_length) * f64::from(length) / ELECTRON;
             for (node, weight) in self.around(root + x).into_iter().flatten() {
                 self.charges[node].fetch_add((electrons * f64::from(weight)) as i64, Relaxed);

@@ -74,6 +74,17 @@ impl<'a> StrandView<'a> {
         0.5 * (length(i) + if i > 0 { length(i - 1) } else { 0.0 })
     }
 
+    /// Returns the length of hair that each point represents, root first: half of the adjacent segments [m].
+    pub fn lengths(&self) -> impl Iterator<Item = f32> + use<'a> {
+        let (rest, lane) = (self.tile.rest, self.lane);
+        let mut before = 0.0;
+        let lengths = rest.iter().step_by(self.stride()).map(move |rows| {
+            let after = rows[rest::LENGTH].0[lane];
+            0.5 * (after + std::mem::replace(&mut before, after))
+        });
+        lengths.take(self.point_count())
+    }
+
     /// Returns the mass of point `i` [kg].
     pub fn mass(&self, i: usize) -> f32 {
         self.tile.rest[i * self.stride()][rest::MASS].0[self.lane]
@@ -110,8 +121,10 @@ impl<'a> StrandView<'a> {
     pub fn add_position_spring(&mut self, i: usize, [from, to]: [Vec3; 2], stiffness: f32) {
         let rows = &mut self.tile.position_spring[i * self.stride()];
         rows[position_spring::STIFFNESS].0[self.lane] += stiffness;
-        for (row, way) in rows[position_spring::WAY..].iter_mut().zip((to - from).to_array()) {
-            row.0[self.lane] += way * stiffness;
+        for (row, displacement) in
+            rows[position_spring::DISPLACEMENT..].iter_mut().zip((to - from).to_array())
+        {
+            row.0[self.lane] += displacement * stiffness;
         }
         self.accelerate(i, to * stiffness);
     }

@@ -371,7 +371,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn whatever_comes_in_a_second_call_finds_nothing(
+        fn a_second_call_repairs_nothing(
             strands in prop::collection::vec(
                 prop::collection::vec((coordinate(), coordinate(), coordinate(), 0u8..4), 0..12), 0..6),
             radius in prop_oneof![Just(4e-5f32), Just(0.0), Just(f32::NAN)],

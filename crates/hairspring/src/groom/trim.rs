@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_kept_keeps_its_values() {
+    fn kept_strands_keep_their_values() {
         let mut groom = two();
         groom.points.extend_from_within(..4);
         groom.radii.extend_from_within(..4);

@@ -5,7 +5,7 @@ use crate::groom::StrandScale;
 use glam::Vec3;
 
 /// Largest number of values in a profile.
-pub const MOST_VALUES: usize = 64;
+pub const MAX_VALUES: usize = 64;
 
 /// Returns the value of a profile at the fraction `along` of the strand's length, 0 at the root and 1 at the
 /// tip: linear between values at equal spacing, the first of which is at the root. 1 for an empty profile.
@@ -49,7 +49,7 @@ pub(crate) fn varies(profile: &[f32]) -> bool {
 
 /// Returns whether the values of a profile are valid: 0 or more.
 pub(super) fn is_profile(values: &[f32]) -> bool {
-    (1..=MOST_VALUES).contains(&values.len()) && values.iter().all(|v| v.is_finite() && *v >= 0.0)
+    (1..=MAX_VALUES).contains(&values.len()) && values.iter().all(|v| v.is_finite() && *v >= 0.0)
 }
 
 /// Returns whether they are, for a parameter that may not be 0 anywhere.

@@ -100,8 +100,8 @@ impl Simulation {
                 let from = (i - 1) / stride * stride;
                 let step = down * (f64::from(strand.rest_length(from)) / stride as f64);
                 at += step;
-                let way = at - x.as_dvec3();
-                energy += f64::from(strand.mass(i)) * gravity.dot(way);
+                let displacement = at - x.as_dvec3();
+                energy += f64::from(strand.mass(i)) * gravity.dot(displacement);
             }
             energy
         };

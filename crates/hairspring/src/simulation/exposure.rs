@@ -27,7 +27,7 @@ use crate::{
 use glam::Vec3;
 use std::{cmp::Reverse, collections::BinaryHeap, sync::Arc};
 
-/// Edge length of a cell [m]. Cells are larger if the hair needs more than [`MOST_CELLS`], or if guides are
+/// Edge length of a cell [m]. Cells are larger if the hair needs more than [`MAX_CELLS`], or if guides are
 /// so far apart that they leave gaps between cells.
 const CELL: f32 = 0.005;
 
@@ -35,10 +35,10 @@ const CELL: f32 = 0.005;
 const FEW: f32 = 3.0;
 
 /// Edge length from which on cells are no longer enlarged for that [m].
-const MOST_EDGE: f32 = 0.02;
+const MAX_EDGE: f32 = 0.02;
 
 /// Approximate largest number of cells.
-const MOST_CELLS: f32 = 262_144.0;
+const MAX_CELLS: f32 = 262_144.0;
 
 /// Drag coefficient Cd of a hair in a wind of about 1 m/s.
 const COEFFICIENT: f32 = 4.0;
@@ -54,7 +54,7 @@ impl Simulation {
         let low = points().fold(Vec3::INFINITY, Vec3::min);
         let high = points().fold(Vec3::NEG_INFINITY, Vec3::max);
         let mut grid = self.dense_grid(low, high, CELL);
-        while grid.edge < MOST_EDGE && grid.strands_per_cell() < FEW {
+        while grid.edge < MAX_EDGE && grid.strands_per_cell() < FEW {
             grid = self.dense_grid(low, high, 2.0 * grid.edge);
         }
         let depth = grid.depths(colliders);
@@ -107,7 +107,7 @@ struct Grid {
 impl Grid {
     fn new(low: Vec3, high: Vec3, edge: f32) -> Self {
         let extent = (high - low).max(Vec3::splat(CELL));
-        let edge = edge.max((extent.element_product() / MOST_CELLS).cbrt());
+        let edge = edge.max((extent.element_product() / MAX_CELLS).cbrt());
         let dims = (extent / edge).to_array().map(|n| n as usize + 3);
         Self { low: low - edge, edge, dims, cost: vec![0.0; dims.iter().product()], length: 0.0 }
     }

@@ -64,7 +64,7 @@ impl Simulation {
             for k in 0..3 {
                 rows[hold::TARGET + k].0[lane] = target[k];
                 rows[hold::FORCE + k].0[lane] = held.force[k];
-                rows[hold::WAY + k].0[lane] = held.displacement[k];
+                rows[hold::DISPLACEMENT + k].0[lane] = held.displacement[k];
             }
             let fast = held.target.is_some() && held.stiffness.is_none();
             rows[hold::PINNED].0[lane] = if fast { 1.0 } else { 0.0 };
@@ -83,7 +83,7 @@ impl Simulation {
     /// Puts the targets at rest after they have reached their positions.
     pub(super) fn end_holds(&mut self) {
         for held in self.state.holds.iter_mut().flatten() {
-            held.rows[hold::WAY..hold::WAY + 3].fill(Row::default());
+            held.rows[hold::DISPLACEMENT..hold::DISPLACEMENT + 3].fill(Row::default());
         }
     }
 

@@ -63,7 +63,7 @@ impl Simulation {
             self.reset_strand(self.model.lane_of_strand[k] as usize);
         }
         if let Some(neighbours) = &mut self.neighbours {
-            neighbours.forget();
+            neighbours.clear();
         }
         self.state.motion = super::teleport::Motion::default();
         self.state.last_h = 0.0;

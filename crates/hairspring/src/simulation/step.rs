@@ -75,7 +75,7 @@ pub(super) const LONGER: f64 = 1.0015;
 
 /// Largest number of substeps in a step, so that a very large `dt` after a stall does not stall the caller
 /// for good.
-const MAX_SUBSTEPS: u32 = 4096;
+const MAX_SUBSTEPS_OF_SOLID: u32 = 4096;
 
 /// Local–global iterations in a substep at normal quality (Liu 2013, §6: ten).
 const LOCAL_GLOBAL: u32 = 10;
@@ -117,7 +117,7 @@ impl Simulation {
         let parts = input.colliders.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
         let substeps = ((f64::from(input.dt) / (substep_length(&solver) * LONGER)).ceil() as u32)
             .max(self.substeps_past(input, carried.as_ref()))
-            .clamp(1, MAX_SUBSTEPS)
+            .clamp(1, MAX_SUBSTEPS_OF_SOLID)
             .next_multiple_of(parts);
         let mut frame = std::mem::take(&mut self.frame);
         let looked_at = frame.segments;

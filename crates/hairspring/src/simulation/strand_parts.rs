@@ -30,7 +30,7 @@ impl Simulation {
         let exchanges = (f64::from(input.dt) / (LONGEST * LONGER)).ceil() as usize;
         let frozen = if self.volume_acts() { substeps.div_ceil(exchanges) } else { substeps };
         let mut neighbours = self.neighbours.take();
-        frame.meets = false;
+        frame.hair_contact = false;
         let alone = if neighbours.is_some() { 1 } else { frozen };
         frame.now = 0..frozen.min(substeps);
         let mut times = StepTimes::default();
@@ -50,7 +50,7 @@ impl Simulation {
             let began = Instant::now();
             if let Some(neighbours) = &mut neighbours {
                 self.apply_contact_loads(neighbours, frame.h);
-                frame.meets = neighbours.touch();
+                frame.hair_contact = neighbours.has_contact();
             }
             let borne = Instant::now();
             if neighbours.is_some() {

@@ -38,10 +38,10 @@ const VERY_THIN: f32 = 0.0025;
 const SLOW: f32 = 0.005;
 
 /// Largest number of substeps for one body. A sheet has almost no thickness.
-const MOST: f32 = 256.0;
+const MAX_SUBSTEPS: f32 = 256.0;
 
 /// The same for a solid body: a rod of 0.5 mm radius at 3 m/s requires 400 in a frame.
-const MOST_OF_SOLID: f32 = 1024.0;
+const MAX_SUBSTEPS_OF_SOLID: f32 = 1024.0;
 
 /// Half thickness below which fast hair may cross a body [m].
 const THIN: f32 = 0.02;
@@ -59,14 +59,15 @@ impl Simulation {
             let (center, radius) = collider.shape.bounds();
             let [a, b] = [start, end].map(|pose| pose.point(center));
             let turn = start.rotation.angle_between(end.rotation);
-            let way = a.distance(b) + turn * radius;
-            if !way.is_finite() || !radius.is_finite() || way < SLOW * radius {
+            let path = a.distance(b) + turn * radius;
+            if !path.is_finite() || !radius.is_finite() || path < SLOW * radius {
                 continue;
             }
             let half = collider.shape.half_thickness();
             let very_thin = collider.shape.is_thin(VERY_THIN);
-            let (part, most) = if very_thin { (PART_OF_THIN, MOST_OF_SOLID) } else { (MAX_TRAVEL, MOST) };
-            let count = (way / (part * half).max(1e-12)).ceil().min(most);
+            let (part, most) =
+                if very_thin { (PART_OF_THIN, MAX_SUBSTEPS_OF_SOLID) } else { (MAX_TRAVEL, MAX_SUBSTEPS) };
+            let count = (path / (part * half).max(1e-12)).ceil().min(most);
             if count <= 1.0 {
                 continue;
             }
@@ -99,7 +100,7 @@ impl Simulation {
         let center = start.point(center);
         let part = (MAX_TRAVEL * shape.half_thickness()).max(1e-12);
         let slow = part * input.dt / substep_length(&self.model.solver) as f32;
-        let way_of_strand = |place: usize| {
+        let path_of_strand = |place: usize| {
             let strand = self.strand(place);
             let mut x = strand.root();
             if x.distance(center) > radius + 2.0 * self.model.longest {
@@ -113,19 +114,19 @@ impl Simulation {
                 // Hair at rest follows the head and the body when they move away together.
                 let slip = strand.velocity(i) * input.dt + x - end.point(own);
                 let with_head = input.anchor.point(self.state.anchor.inverse_point(x)) - x;
-                let way = slip.length().min((slip + with_head).length());
-                if way > most.max(slow) && shape.distance(own) < way + edge.length() {
-                    most = way;
+                let path = slip.length().min((slip + with_head).length());
+                if path > most.max(slow) && shape.distance(own) < path + edge.length() {
+                    most = path;
                 }
             }
             most
         };
-        let way = self
+        let path = self
             .model
             .lane_of_strand
             .par_iter()
-            .map(|&place| way_of_strand(place as usize))
+            .map(|&place| path_of_strand(place as usize))
             .reduce(|| 0.0, f32::max);
-        (way / part).ceil().min(MOST) as u32
+        (path / part).ceil().min(MAX_SUBSTEPS) as u32
     }
 }

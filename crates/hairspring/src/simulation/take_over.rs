@@ -175,7 +175,7 @@ impl Simulation {
             for k in 0..3 {
                 let v = state[state::V + k].0[lane];
                 history[history::V + k].0[lane] = v;
-                history[history::WAY + k].0[lane] = v * self.state.last_h;
+                history[history::DISPLACEMENT + k].0[lane] = v * self.state.last_h;
             }
         }
     }

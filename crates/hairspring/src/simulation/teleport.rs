@@ -50,7 +50,7 @@ impl Simulation {
             if let Some(history) = self.state.history.get_mut(points) {
                 for rows in history {
                     rotate(&turn, &mut rows[history::V..history::V + 3]);
-                    rotate(&turn, &mut rows[history::WAY..history::WAY + 3]);
+                    rotate(&turn, &mut rows[history::DISPLACEMENT..history::DISPLACEMENT + 3]);
                 }
             }
         }
@@ -67,19 +67,19 @@ impl Simulation {
     /// teleports. Returns the applied motion.
     pub(super) fn carry_along(&mut self, input: &StepInput) -> Option<RigidTransform> {
         let solver = self.model.solver;
-        let way = input.anchor.after(&self.state.anchor.inverse());
+        let motion = input.anchor.after(&self.state.anchor.inverse());
         let moved = input.anchor.translation - self.state.anchor.translation;
-        let turned = way.rotation.to_scaled_axis();
+        let turned = motion.rotation.to_scaled_axis();
         let expected = Quat::from_scaled_axis(self.state.motion.spin * input.dt);
         let off = (moved - self.state.motion.velocity * input.dt).length();
-        let turned_off = way.rotation.angle_between(expected);
+        let turned_off = motion.rotation.angle_between(expected);
         let jumped = is_teleport(off, turned_off, solver.teleport_distance, f64::from(input.dt));
         // The next frame is compared with the motion of a teleport, too. After a single jump, hair is thus
         // moved rigidly once more, by as little as the head then moves. If it was the start of a fast motion,
         // the solver sees the motion from the next frame on.
         let now = Motion { velocity: moved / input.dt, spin: turned / input.dt };
         let by = if jumped {
-            way
+            motion
         } else if solver.inertia < 1.0 {
             self.state.anchor.lerp(&input.anchor, 1.0 - solver.inertia).after(&self.state.anchor.inverse())
         } else {

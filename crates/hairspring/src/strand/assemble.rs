@@ -112,12 +112,12 @@ pub enum Linearization {
 impl Linearization {
     /// The share of a segment's current length error that the solve adds to its tension [1]: 1 in the first
     /// solve, 0 in the following ones, because the first has already added it.
-    pub fn news(self) -> f32 {
+    pub fn length_error_share(self) -> f32 {
         if self == Self::Newton { 0.0 } else { 1.0 }
     }
 
     /// The time that velocities act before the starting point of the solve [s], in a substep of `h` [s].
-    pub fn predicted_displacement(self, h: f32) -> f32 {
+    pub fn prediction_time(self, h: f32) -> f32 {
         if self == Self::Initial { h } else { 0.0 }
     }
 }
@@ -136,18 +136,34 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
 {
     let n = tile.rest.len();
     let mut elements = Elements::<S, M, B, N>::begin(simd, sweep, step, tile, scratch);
-    let acted = external::any(tile);
+    let has_external_terms = external::any(tile);
     let first = M::DRIVEN.next_multiple_of(M::STRIDE);
     // The driven points and the tip are handled outside the loop, so that the loop has no special cases.
     for i in 0..first {
-        pass_point(simd, (sweep, i, i % M::STRIDE, true), step, tile, scratch, &mut elements, acted);
+        pass_point(
+            simd,
+            (sweep, i, i % M::STRIDE, true),
+            step,
+            tile,
+            scratch,
+            &mut elements,
+            has_external_terms,
+        );
     }
     let mut i = first;
     // Not `i + STRIDE < n`: from that, the compiler cannot infer that i + 1 is below n.
     while i < n.saturating_sub(M::STRIDE) {
-        pass_point(simd, (sweep, i, 0, false), step, tile, scratch, &mut elements, acted);
+        pass_point(simd, (sweep, i, 0, false), step, tile, scratch, &mut elements, has_external_terms);
         if M::STRIDE == 2 {
-            pass_point(simd, (sweep, i + 1, 1, false), step, tile, scratch, &mut elements, acted);
+            pass_point(
+                simd,
+                (sweep, i + 1, 1, false),
+                step,
+                tile,
+                scratch,
+                &mut elements,
+                has_external_terms,
+            );
         }
         i += M::STRIDE;
     }
@@ -165,14 +181,14 @@ fn pass_point<S, M, const B: usize, const N: usize>(
     tile: &mut Tile,
     scratch: &mut Scratch,
     elements: &mut Elements<S, M, B, N>,
-    acted: bool,
+    has_external_terms: bool,
 ) where
     S: Simd,
     M: Model<S, B, N>,
 {
-    if acted || external::pressed(simd, M::STRIDE, i, tile) {
-        let AssemblyCursor { x, way, root_velocity, .. } = elements.walk;
-        let place = external::Place { i, x, way, root_velocity };
+    if has_external_terms || external::pressed(simd, M::STRIDE, i, tile) {
+        let AssemblyCursor { x, displacement, root_velocity, .. } = elements.cursor;
+        let place = external::Place { i, x, displacement, root_velocity };
         external::add::<S, M, B, N>(
             simd,
             (sweep, step),
@@ -205,7 +221,7 @@ fn eliminate_across<S, M, const B: usize, const N: usize>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let across = M::across(simd, (step.h, sweep.predicted_displacement(step.h)), i, tile, scratch);
+            let across = M::across(simd, (step.h, sweep.prediction_time(step.h)), i, tile, scratch);
             scratch.across.push(across.eliminate(simd, M::PROFILE, i, scratch.factors));
         },
     );
@@ -255,10 +271,10 @@ fn add_point<S, M, const B: usize, const N: usize>(
     let segment = elements.add(simd, i, phase, tile, scratch);
     if sweep == Linearization::Newton {
         let old = V3::load(simd, &tile.state[i + 1][state::EDGE..]);
-        elements.walk.way += V3::load(simd, &scratch.edges[i + 1]) - old;
+        elements.cursor.displacement += V3::load(simd, &scratch.edges[i + 1]) - old;
     }
-    let Elements { band, walk: AssemblyCursor { way, root_velocity, ambient, .. }, .. } = elements;
-    let (way, root_velocity) = (*way, *root_velocity);
+    let Elements { band, cursor: AssemblyCursor { displacement, root_velocity, ambient, .. }, .. } = elements;
+    let (displacement, root_velocity) = (*displacement, *root_velocity);
     prefetch_next_tile(tile.rest, i, step.number);
     prefetch_next_tile(tile.state, i, 2 * step.number);
     prefetch_next_tile(tile.state, i, 2 * step.number + 1);
@@ -270,22 +286,28 @@ fn add_point<S, M, const B: usize, const N: usize>(
     let v = V3::load(simd, &tile.state[i + 1][state::V..]);
     let (a, inv_h2) = (step.inertia(), inv_h * inv_h);
     let m_h2 = mass * (a * inv_h2);
-    let outset =
-        PredictedState { sweep, faster: v - root_velocity, share: sweep.predicted_displacement(step.h), way };
+    let predicted = PredictedState {
+        sweep,
+        faster: v - root_velocity,
+        share: sweep.prediction_time(step.h),
+        displacement,
+    };
     // p minus a/h² times the displacement so far, plus gravity.
     let mut p = if step.second_order {
         let before = &tile.history[i + 1];
         let v_before = V3::load(simd, &before[history::V..]);
-        let way_before = V3::load(simd, &before[history::WAY..]);
+        let displacement_before = V3::load(simd, &before[history::DISPLACEMENT..]);
         V3::splat(simd, step.gravity)
             + (v * F::splat(simd, 4.0) - v_before) * F::splat(simd, 0.5 * inv_h)
-            + (way_before * F::splat(simd, 3.0) - step.moved * F::splat(simd, 9.0))
+            + (displacement_before * F::splat(simd, 3.0) - step.moved * F::splat(simd, 9.0))
                 * F::splat(simd, 0.25 * inv_h2)
-            - outset.way(simd) * F::splat(simd, a * inv_h2)
+            - predicted.displacement(simd) * F::splat(simd, a * inv_h2)
     } else if sweep == Linearization::Initial {
         ambient.pull
     } else {
-        ambient.pull + (v - root_velocity - outset.way(simd) * F::splat(simd, inv_h)) * F::splat(simd, inv_h)
+        ambient.pull
+            + (v - root_velocity - predicted.displacement(simd) * F::splat(simd, inv_h))
+                * F::splat(simd, inv_h)
     };
     if let Some(push) = tile.external_acceleration.get(i + 1) {
         p += V3::load(simd, push);
@@ -300,7 +322,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
         let moving = if sweep == Linearization::Initial {
             v
         } else {
-            root_velocity + outset.way(simd) * F::splat(simd, inv_h)
+            root_velocity + predicted.displacement(simd) * F::splat(simd, inv_h)
         };
         let slip = ambient.wind + local - moving;
         right += slip * across + u * (u.dot(slip) * (along - across));

@@ -215,7 +215,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                         compiler_fence(Ordering::SeqCst);
                         let point = &own[(reach - back) * rows..][..rows];
                         // The contribution of the previous point's long-range spring to this row.
-                        let mut of_far = F::<S>::splat(simd, NOTHING);
+                        let mut long_range = F::<S>::splat(simd, NOTHING);
                         each!(k of 0 1 2 3, {
                             let last = profile.last(k);
                             if k < B && back * B + r <= last && (back > 0 || k < r) {
@@ -231,7 +231,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                                     if back == 0 {
                                         w[r] = l.mul_add(w[k], w[r]);
                                     } else {
-                                        of_far = l.mul_add(load(simd, &point[profile.far_row(k)]), of_far);
+                                        long_range = l.mul_add(load(simd, &point[profile.far_row(k)]), long_range);
                                     }
                                 }
                             }
@@ -240,7 +240,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                             let at = (reach - back) * B;
                             let u = V3::load(simd, &point[profile.far_row(B)..]);
                             for (c, u) in [u.x, u.y, u.z].into_iter().enumerate() {
-                                row[at + c] = (-of_far).mul_add(u, row[at + c]);
+                                row[at + c] = (-long_range).mul_add(u, row[at + c]);
                             }
                         }
                     }

@@ -30,12 +30,12 @@ pub struct BorderedConstraint<S: Simd> {
     /// Gradient of the spring's length at each point [1].
     pub gradient: [V3<S>; 4],
     /// Extension beyond the rest length at the starting point of the solve [m].
-    pub longer: F<S>,
+    pub extension: F<S>,
     /// Stiffness [N/m].
     pub stiffness: F<S>,
 }
 
-/// The numbers of a spring with eliminated force that the upward sweep needs.
+/// What back substitution needs of a spring whose force was eliminated.
 #[derive(Clone, Copy)]
 pub struct Eliminated {
     /// The point after which it was eliminated.
@@ -52,13 +52,13 @@ impl<S: Simd> BorderedConstraint<S> {
     #[inline(always)]
     pub fn none(simd: S) -> Self {
         let zero = F::splat(simd, 0.0);
-        Self { gradient: [V3::zero(simd); 4], longer: zero, stiffness: zero }
+        Self { gradient: [V3::zero(simd); 4], extension: zero, stiffness: zero }
     }
 
     /// The force on each point [N].
     #[inline(always)]
     pub fn forces(&self) -> [V3<S>; 4] {
-        let pull = -(self.stiffness * self.longer);
+        let pull = -(self.stiffness * self.extension);
         let [a, b, c, d] = self.gradient;
         [a * pull, b * pull, c * pull, d * pull]
     }
@@ -73,11 +73,11 @@ impl<S: Simd> BorderedConstraint<S> {
         i: usize,
         factors: &mut [Work],
     ) -> Eliminated {
-        let &Self { gradient: [g0, mut h1, mut h2, h3], longer, stiffness } = self;
+        let &Self { gradient: [g0, mut h1, mut h2, h3], extension, stiffness } = self;
         let point = &factors[(i + Profile::<B, N>::REACH) * profile.rows()..][..profile.rows()];
         let mut q = [g0.x, g0.y, g0.z];
         let zero = F::<S>::splat(simd, 0.0);
-        let (mut squares, mut right, mut of_far) = (zero, longer, zero);
+        let (mut squares, mut right, mut long_range) = (zero, extension, zero);
         for k in 0..3 {
             // The factors from unknown k+1 of the window on.
             let u = &point[profile.row(k)..];
@@ -88,11 +88,11 @@ impl<S: Simd> BorderedConstraint<S> {
             }
             h1 = V3::load(simd, &u[B - k - 1..]).mul_add(l, h1);
             h2 = V3::load(simd, &u[2 * B - k - 1..]).mul_add(l, h2);
-            of_far = l.mul_add(load(simd, &point[profile.far_row(k)]), of_far);
+            long_range = l.mul_add(load(simd, &point[profile.far_row(k)]), long_range);
             squares = (-l).mul_add(q[k], squares);
             right = (-l).mul_add(load(simd, &u[profile.last(k) - k]), right);
         }
-        let h = [h1, h2, h3 - V3::load(simd, &point[profile.far_row(B)..]) * of_far];
+        let h = [h1, h2, h3 - V3::load(simd, &point[profile.far_row(B)..]) * long_range];
         let pivot = stiffness / stiffness.mul_add(squares, F::splat(simd, 1.0));
         let pending = &mut PendingRows::<B, N>::new(profile, i + 1, factors);
         for p in 0..3 {
@@ -120,7 +120,7 @@ impl Eliminated {
     /// Computes the spring's force from the unknowns of the three points after it, and subtracts its effect
     /// from the right-hand side of its own point.
     #[inline(always)]
-    pub fn put_back<S: Simd, const B: usize, const N: usize>(
+    pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
         &self,
         simd: S,
         profile: Profile<B, N>,

@@ -49,13 +49,13 @@ pub mod scratch {
 const STICK: f32 = 4.0;
 
 /// Adds the contact of point `i`, the second of the window. `x` is its position relative to the root, `drift`
-/// its predicted displacement, and `way` its displacement since the start of the substep, including `drift`.
+/// its predicted displacement, and `displacement` its displacement since the start of the substep, including `drift`.
 #[inline(always)]
 pub fn assemble_contact<S: Simd, const B: usize>(
     simd: S,
     (sweep, step): (Linearization, &SubstepContext<S>),
     tile: &mut Tile,
-    (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
+    (i, x, drift, displacement): (usize, V3<S>, V3<S>, V3<S>),
     system: &mut impl System<S, B>,
     work: &mut [Work; scratch::ROWS],
 ) {
@@ -93,7 +93,7 @@ pub fn assemble_contact<S: Simd, const B: usize>(
     system.add_force(
         1,
         normal * (force - k * (gap + normal.dot(drift)))
-            - (stretch + along(way + step.moved - carried)) * stiffness,
+            - (stretch + along(displacement + step.moved - carried)) * stiffness,
     );
 }
 

@@ -22,7 +22,7 @@ pub struct Elements<S: Simd, M, const B: usize, const N: usize> {
     pub band: Band<S, B, N>,
     model: M,
     /// The state of the sweep.
-    pub walk: AssemblyCursor<S>,
+    pub cursor: AssemblyCursor<S>,
 }
 
 /// The position of a downward sweep, and values that hold for all of it.
@@ -32,7 +32,7 @@ pub struct AssemblyCursor<S: Simd> {
     /// Position of the next particle, relative to the root [m].
     pub x: V3<S>,
     /// Displacement of that particle since the start of the substep [m]; only used by Newton iterations.
-    pub way: V3<S>,
+    pub displacement: V3<S>,
     /// Velocity of the root in the last substep [m/s].
     pub root_velocity: V3<S>,
     /// Forces that are the same at all points.
@@ -66,9 +66,9 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             u: [first.length_and_unit().1; 2],
             inverse_length: [F::splat(simd, 0.0); 2],
             damped: damping * (1.0 / step.h) + 1.0,
-            news: sweep.news(),
+            length_error_share: sweep.length_error_share(),
             drift: [zero; 2],
-            drifting: F::splat(simd, sweep.predicted_displacement(step.h)),
+            drifting: F::splat(simd, sweep.prediction_time(step.h)),
             h: step.h,
         };
         let begin = 2 * Profile::<B, N>::REACH * M::PROFILE.rows();
@@ -83,8 +83,9 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             pull: (root_velocity - now).mul_add(F::splat(simd, 1.0 / step.h), V3::splat(simd, step.gravity)),
             wind: V3::splat(simd, step.wind) + (root_velocity - now),
         };
-        let walk = AssemblyCursor { at, x: zero, way: zero, root_velocity, ambient, half_drag, sideways };
-        Self { band, model, walk }
+        let cursor =
+            AssemblyCursor { at, x: zero, displacement: zero, root_velocity, ambient, half_drag, sideways };
+        Self { band, model, cursor }
     }
 
     /// Adds the elements that begin at the next point `i`: those of the model, and the stretch of the
@@ -93,21 +94,21 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     #[inline(always)]
     pub fn add(&mut self, simd: S, i: usize, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
         let Scratch { edges, fixed, .. } = scratch;
-        let Self { band, model, walk } = self;
-        (walk.at.i, walk.at.phase) = (i, phase);
+        let Self { band, model, cursor } = self;
+        (cursor.at.i, cursor.at.phase) = (i, phase);
         *band = Band::new(simd);
         let next = i + 1;
-        walk.x += V3::load(simd, &edges[next]);
+        cursor.x += V3::load(simd, &edges[next]);
         let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
         if let Some(rows) = tile.along.get(next) {
             let damping = Root::<S>::fiber(simd, tile.strand).1 * load(simd, &rows[along::DAMPING]);
-            walk.at.damped = damping * (1.0 / walk.at.h) + 1.0;
+            cursor.at.damped = damping * (1.0 / cursor.at.h) + 1.0;
         }
         if phase + 1 < M::STRIDE {
-            model.add(simd, &walk.at, scratch, tile, band);
+            model.add(simd, &cursor.at, scratch, tile, band);
             // Extra particles are not part of the fiber and have no drag.
-            return Segment { u: walk.at.u[1], mass, air: F::splat(simd, 0.0) };
+            return Segment { u: cursor.at.u[1], mass, air: F::splat(simd, 0.0) };
         }
         // Loaded again instead of kept from the previous point, because those values would be spilled to
         // memory anyway.
@@ -120,7 +121,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         };
         let e = segment(far);
         let (l, u) = e.length_and_unit();
-        let at = &mut walk.at;
+        let at = &mut cursor.at;
         at.e = [segment(next), e];
         at.drift = [at.drift[1], (v2 - v1) * at.drifting];
         at.u = [at.u[1], u];
@@ -130,14 +131,19 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let length = load(simd, &row[rest::LENGTH]);
         let k = load(simd, &fixed[next].along);
         let tension = load(simd, &tile.state[next][state::TENSION]);
-        let (force, block) =
-            stretch((l, u), (l - length) * at.news, (k, tension, mass), at.drift[1], &walk.sideways);
+        let (force, block) = stretch(
+            (l, u),
+            (l - length) * at.length_error_share,
+            (k, tension, mass),
+            at.drift[1],
+            &cursor.sideways,
+        );
         band.add_diagonal(1, block);
         band.add_diagonal(1 + M::STRIDE, block);
         band.add_block(1, 1 + M::STRIDE, &-block.full());
         band.add_force(1, force);
         band.add_force(1 + M::STRIDE, -force);
-        let air = tile.at_particle(walk.half_drag, next, along::DRAG)
+        let air = tile.at_particle(cursor.half_drag, next, along::DRAG)
             * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
         Segment { u, mass, air }
     }
@@ -148,7 +154,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     pub fn add_forces(&mut self, simd: S, i: usize, tile: &mut Tile, scratch: &Scratch) {
         self.add(simd, i, i % M::STRIDE, tile, scratch);
         if M::acts_across(simd, i, tile, scratch) {
-            let across = M::across(simd, (self.walk.at.h, 0.0), i, tile, scratch);
+            let across = M::across(simd, (self.cursor.at.h, 0.0), i, tile, scratch);
             for (p, force) in across.forces().into_iter().enumerate() {
                 self.band.add_force(p, force);
             }
@@ -185,10 +191,10 @@ pub struct PredictedState<S: Simd> {
     pub sweep: Linearization,
     /// Velocity of the point relative to the root [m/s].
     pub faster: V3<S>,
-    /// See [`Linearization::predicted_displacement`] [s].
+    /// See [`Linearization::prediction_time`] [s].
     pub share: f32,
     /// Displacement since the start of the substep [m]; only used by Newton iterations.
-    pub way: V3<S>,
+    pub displacement: V3<S>,
 }
 
 impl<S: Simd> PredictedState<S> {
@@ -200,7 +206,7 @@ impl<S: Simd> PredictedState<S> {
 
     /// Displacement since the start of the substep [m].
     #[inline(always)]
-    pub fn way(&self, simd: S) -> V3<S> {
-        if self.sweep == Linearization::Initial { self.drift(simd) } else { self.way }
+    pub fn displacement(&self, simd: S) -> V3<S> {
+        if self.sweep == Linearization::Initial { self.drift(simd) } else { self.displacement }
     }
 }

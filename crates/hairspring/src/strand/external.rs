@@ -32,7 +32,7 @@ pub struct Place<S: Simd> {
     /// Position relative to the root [m].
     pub x: V3<S>,
     /// Displacement since the start of the substep [m]; only used by Newton iterations.
-    pub way: V3<S>,
+    pub displacement: V3<S>,
     /// Velocity of the root in the last substep [m/s].
     pub root_velocity: V3<S>,
 }
@@ -76,7 +76,7 @@ pub fn add<S, M, const B: usize, const N: usize>(
 fn act<S, M, const B: usize, const N: usize>(
     simd: S,
     (sweep, step): (Linearization, &SubstepContext<S>),
-    &Place { i, x, way, root_velocity }: &Place<S>,
+    &Place { i, x, displacement, root_velocity }: &Place<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
 ) where
@@ -85,30 +85,30 @@ fn act<S, M, const B: usize, const N: usize>(
 {
     let Scratch { factors, edges, contacts, .. } = scratch;
     let pending = &mut PendingRows::<B, N>::new(M::PROFILE, i, factors);
-    let (next, share) = (i + 1, sweep.predicted_displacement(step.h));
+    let (next, share) = (i + 1, sweep.prediction_time(step.h));
     let velocity = |tile: &Tile, i: usize| V3::load(simd, &tile.state[i][state::V..]) - root_velocity;
     if i.is_multiple_of(M::STRIDE) && i > 0 && i + M::STRIDE < tile.rest.len() {
-        let outset = PredictedState { sweep, faster: velocity(tile, i), share, way };
-        let inner = (i, x, outset.drift(simd), outset.way(simd));
+        let predicted = PredictedState { sweep, faster: velocity(tile, i), share, displacement };
+        let inner = (i, x, predicted.drift(simd), predicted.displacement(simd));
         assemble_segment_contact(simd, (sweep, step, M::STRIDE), tile, inner, pending, (edges, contacts));
     }
     let edge = V3::load(simd, &edges[next]);
     let x = x + edge;
-    let way = if sweep == Linearization::Newton {
-        way + (edge - V3::load(simd, &tile.state[next][state::EDGE..]))
+    let displacement = if sweep == Linearization::Newton {
+        displacement + (edge - V3::load(simd, &tile.state[next][state::EDGE..]))
     } else {
-        way
+        displacement
     };
-    let outset = PredictedState { sweep, faster: velocity(tile, next), share, way };
-    let (drift, way) = (outset.drift(simd), outset.way(simd));
+    let predicted = PredictedState { sweep, faster: velocity(tile, next), share, displacement };
+    let (drift, displacement) = (predicted.drift(simd), predicted.displacement(simd));
     let mass = load(simd, &tile.rest[next][rest::MASS]);
     let inv_h = 1.0 / step.h;
 
     if let Some(rows) = tile.position_spring.get(next) {
         let stiffness = load(simd, &rows[position_spring::STIFFNESS]);
         let brake = load(simd, &rows[position_spring::BRAKE]) * inv_h;
-        let late = V3::load(simd, &rows[position_spring::WAY..]) * F::splat(simd, step.left);
-        pending.add_force(1, (late + (x + drift) * stiffness + (way + step.moved) * brake) * -mass);
+        let late = V3::load(simd, &rows[position_spring::DISPLACEMENT..]) * F::splat(simd, step.left);
+        pending.add_force(1, (late + (x + drift) * stiffness + (displacement + step.moved) * brake) * -mass);
         pending.add_identity(1, mass * (stiffness + brake));
     }
     let on_strand = next.is_multiple_of(M::STRIDE);
@@ -120,7 +120,8 @@ fn act<S, M, const B: usize, const N: usize>(
         }
         let u = after.length_and_unit().1;
         let brake = load(simd, &rows[anisotropic_drag::BRAKE]) * inv_h;
-        let slip = V3::load(simd, &rows[anisotropic_drag::ACCELERATION..]) - (way + step.moved) * brake;
+        let slip =
+            V3::load(simd, &rows[anisotropic_drag::ACCELERATION..]) - (displacement + step.moved) * brake;
         pending.add_force(1, (slip - u * u.dot(slip)) * mass);
         let across = brake * mass;
         pending.add_diagonal(1, Sym3::outer(u, -across).add_identity(across));
@@ -131,7 +132,7 @@ fn act<S, M, const B: usize, const N: usize>(
         }
         if at.point as usize == next {
             let pinned = load(simd, &at.rows[hold::PINNED]);
-            let to_go = V3::load(simd, &at.rows[hold::WAY..]) * F::splat(simd, step.left);
+            let to_go = V3::load(simd, &at.rows[hold::DISPLACEMENT..]) * F::splat(simd, step.left);
             let target = V3::load(simd, &at.rows[hold::TARGET..]) - to_go - step.root.position;
             let m_h2 = mass * (step.inertia() * inv_h * inv_h);
             let k = (pinned * HOLD).mul_add(m_h2, load(simd, &at.rows[hold::STIFFNESS]));
@@ -141,6 +142,13 @@ fn act<S, M, const B: usize, const N: usize>(
     }
     if on_strand {
         tether::pull(simd, step, tile, (next, x, drift), pending);
-        assemble_contact(simd, (sweep, step), tile, (next, x, drift, way), pending, &mut contacts[next]);
+        assemble_contact(
+            simd,
+            (sweep, step),
+            tile,
+            (next, x, drift, displacement),
+            pending,
+            &mut contacts[next],
+        );
     }
 }

@@ -20,7 +20,7 @@ pub struct FrameContext {
     /// Whether the last substep before this frame was as long as those in it.
     pub continues: bool,
     /// Whether any strands touch each other. Strand contacts are solved between substeps.
-    pub meets: bool,
+    pub hair_contact: bool,
     /// The method that keeps hair out of colliders.
     pub response: Response,
     /// Whether segments are tested between their points; see `segment`.

@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn what_hangs_is_carried_above_it() {
+    fn each_segment_carries_the_weight_below_it() {
         let points: Vec<Vec3> = (0..33).map(|i| Vec3::NEG_Y * (0.2 * i as f32 / 32.0)).collect();
         let (radii, gravity) = ([4e-5; 33], DVec3::NEG_Y * 9.81);
         let fiber = fiber(&radii, &[1.0, 3.0]);

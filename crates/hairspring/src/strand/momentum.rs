@@ -83,20 +83,20 @@ fn forces_of(
     };
     let mut tile = range.tile(0);
     if model == Elastic::Springs {
-        dispatch!(Level::new(), simd => forces = walk::<_, Springs, 3, 12>(simd, s, &mut tile));
+        dispatch!(Level::new(), simd => forces = cursor::<_, Springs, 3, 12>(simd, s, &mut tile));
         return forces;
     }
     dispatch_double!(Level::new(), simd => forces = match model {
-        Elastic::Straight => walk::<_, Straight, 3, 9>(simd, s, &mut tile),
-        Elastic::Curvature => walk::<_, Curvature<_>, 3, 9>(simd, s, &mut tile),
-        Elastic::Rod => walk::<_, Rod<_>, 4, 11>(simd, s, &mut tile),
+        Elastic::Straight => cursor::<_, Straight, 3, 9>(simd, s, &mut tile),
+        Elastic::Curvature => cursor::<_, Curvature<_>, 3, 9>(simd, s, &mut tile),
+        Elastic::Rod => cursor::<_, Rod<_>, 4, 11>(simd, s, &mut tile),
         Elastic::Springs => unreachable!("the springs model has single precision only"),
     });
     forces
 }
 
 #[inline(always)]
-fn walk<S, M, const B: usize, const N: usize>(simd: S, s: &reference::Strand, tile: &mut Tile) -> Forces
+fn cursor<S, M, const B: usize, const N: usize>(simd: S, s: &reference::Strand, tile: &mut Tile) -> Forces
 where
     S: Simd,
     M: Model<S, B, N>,

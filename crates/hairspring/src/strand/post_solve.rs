@@ -86,7 +86,7 @@ pub fn post_solve<S: Simd>(
 ) {
     let inv_h = F::<S>::splat(simd, 1.0 / step.h);
     // The root and its driven particles.
-    let mut at = Particle { x: V3::zero(simd), way: step.moved };
+    let mut at = Particle { x: V3::zero(simd), displacement: step.moved };
     for (rows, driven) in tile.state.iter_mut().zip(&*scratch.edges).take(stride + 1) {
         let edge = V3::load(simd, driven);
         at = at.on(edge, V3::load(simd, &rows[state::EDGE..]));
@@ -225,7 +225,7 @@ fn project_particle<S: Simd>(
             // Out along the normal, then back along the surface, by at most μ times the depth.
             let pushed = e + normal * depth;
             let carried = surface_displacement(simd, pose, world);
-            let slide = at.way + (pushed - old) - carried;
+            let slide = at.displacement + (pushed - old) - carried;
             let tangent = slide - normal * normal.dot(slide);
             let held = pushed - tangent * friction.share(depth, tangent.dot(tangent));
             // The part of the correction that did not stop an approach becomes a contact force in the next
@@ -250,11 +250,11 @@ fn project_particle<S: Simd>(
                     caught = still;
                     break;
                 }
-                let (way, far) = out_of(simd, normal, wall);
+                let (outward, far) = out_of(simd, normal, wall);
                 wall = normal;
                 // Points that are out are not changed, so that their result does not depend on their
                 // neighbors in the tile.
-                q = V3::select(still, link.clamp(link.swing_out(q, way, left * far)), q);
+                q = V3::select(still, link.clamp(link.swing_out(q, outward, left * far)), q);
             }
             if finish.project {
                 e = V3::select(inside, q, e);
@@ -294,9 +294,9 @@ const WEDGE: f32 = 0.25;
 #[inline(always)]
 pub fn out_of<S: Simd>(simd: S, normal: V3<S>, wall: V3<S>) -> (V3<S>, F<S>) {
     let into = wall.dot(normal).min(0.0);
-    let (size, way) = (normal - wall * into).length_and_unit();
+    let (size, outward) = (normal - wall * into).length_and_unit();
     let (squarely, one) = (size.simd_lt(STEEP), F::<S>::splat(simd, 1.0));
-    (V3::select(squarely, normal, way), one / squarely.select(one, size.max(WEDGE)))
+    (V3::select(squarely, normal, outward), one / squarely.select(one, size.max(WEDGE)))
 }
 
 /// A particle in the sweep from root to tip.
@@ -305,14 +305,14 @@ pub struct Particle<S: Simd> {
     /// Position relative to the root [m].
     pub x: V3<S>,
     /// Displacement in the substep [m].
-    pub way: V3<S>,
+    pub displacement: V3<S>,
 }
 
 impl<S: Simd> Particle<S> {
     /// The next particle, from the edge to it after (`edge`) and before (`old`) the substep.
     #[inline(always)]
     fn on(&self, edge: V3<S>, old: V3<S>) -> Self {
-        Self { x: self.x + edge, way: self.way + (edge - old) }
+        Self { x: self.x + edge, displacement: self.displacement + (edge - old) }
     }
 }
 
@@ -328,17 +328,17 @@ fn write<S: Simd>(
 ) -> Particle<S> {
     let inv_h = F::<S>::splat(simd, 1.0 / step.h);
     let at = before.on(edge, V3::load(simd, &tile.state[i][state::EDGE..]));
-    let mut v = at.way * inv_h;
+    let mut v = at.displacement * inv_h;
     if finish.kicks {
         v += V3::load(simd, &scratch.kick[i]);
     }
     if let Some(history) = tile.history.get_mut(i) {
         if step.second_order {
-            let before = V3::load(simd, &history[history::WAY..]);
-            v += (at.way - before) * (inv_h * 0.5);
+            let before = V3::load(simd, &history[history::DISPLACEMENT..]);
+            v += (at.displacement - before) * (inv_h * 0.5);
         }
         V3::load(simd, &tile.state[i][state::V..]).store(&mut history[history::V..]);
-        at.way.store(&mut history[history::WAY..]);
+        at.displacement.store(&mut history[history::DISPLACEMENT..]);
     }
     let rows = &mut tile.state[i];
     v.store(&mut rows[state::V..state::V + 3]);

@@ -30,7 +30,7 @@ pub struct Scratch<'a> {
     pub factors: &'a mut [Work],
     /// Springs with eliminated force, as a stack with capacity for one a point.
     pub across: &'a mut Vec<bordered::Eliminated>,
-    /// New edges: vectors from each particle's predecessor to it, shape `[points + BEYOND]` [m]; see
+    /// New edges: vectors from each particle's predecessor to it, shape `[points + EDGE_PADDING]` [m]; see
     /// `state::EDGE`.
     pub edges: &'a mut [[Work; 3]],
     /// Velocity changes in addition to `(new − old) / h`, shape `[points]` [m/s]; used for forces before
@@ -47,14 +47,14 @@ pub struct Scratch<'a> {
 }
 
 /// Largest number of rows of factors a point: that of the rod.
-const MOST_FACTORS: usize = Profile::<4, 11>::within(10).rows();
+const MAX_FACTORS: usize = Profile::<4, 11>::within(10).rows();
 
 /// Largest number of preceding points that a point is coupled to: that of the springs model.
-const MOST_REACH: usize = Profile::<3, 12>::REACH;
+const MAX_REACH: usize = Profile::<3, 12>::REACH;
 
 /// Edges after the last, so that three consecutive edges can be read at any point. They are finite, and no
 /// result depends on them.
-const BEYOND: usize = 3;
+const EDGE_PADDING: usize = 3;
 
 impl Memory {
     /// Returns the scratch memory for a tile of `points`.
@@ -62,9 +62,9 @@ impl Memory {
     pub fn scratch(&mut self, points: usize) -> Scratch<'_> {
         self.reserve(points);
         Scratch {
-            factors: &mut self.factors[..(points + 2 * MOST_REACH) * MOST_FACTORS],
+            factors: &mut self.factors[..(points + 2 * MAX_REACH) * MAX_FACTORS],
             across: &mut self.across,
-            edges: &mut self.edges[..points + BEYOND],
+            edges: &mut self.edges[..points + EDGE_PADDING],
             kick: &mut self.kick[..points],
             change: &mut self.change[..points],
             contacts: &mut self.contacts[..points],
@@ -76,11 +76,11 @@ impl Memory {
     /// Grows the memory for a tile of `points`.
     fn reserve(&mut self, points: usize) {
         if self.fixed.len() < points {
-            self.factors.resize((points + 2 * MOST_REACH) * MOST_FACTORS, Work::default());
+            self.factors.resize((points + 2 * MAX_REACH) * MAX_FACTORS, Work::default());
             self.across.reserve(points);
             self.kick.resize(points, [Work::default(); 3]);
             self.change.resize(points, [Work::default(); 3]);
-            self.edges.resize(points + BEYOND, [Work::default(); 3]);
+            self.edges.resize(points + EDGE_PADDING, [Work::default(); 3]);
             self.contacts.resize(points, [Work::default(); contact::scratch::ROWS]);
             self.pulls.resize(points, [Work::default(); project::scratch::ROWS]);
             self.fixed.resize(points, Precomputed::default());
@@ -104,6 +104,6 @@ impl Scratch<'_> {
         for (edge, at) in self.edges.iter_mut().zip(state) {
             V3::load(simd, &at[state::EDGE..]).store(edge);
         }
-        self.edges[state.len()..state.len() + BEYOND].fill([Work::default(); 3]);
+        self.edges[state.len()..state.len() + EDGE_PADDING].fill([Work::default(); 3]);
     }
 }

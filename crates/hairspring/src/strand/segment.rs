@@ -117,7 +117,7 @@ pub fn resolve_segment_contact<S: Simd>(
     let thin = |edges: &&Edges| link.length.simd_gt(2.0 * edges.half_thickness()).any_true();
     let edges = pose.edges.as_ref().filter(thin);
     let side = edges.map(|edges| {
-        let mut side = edges.side(simd, (a - inner.way, old), -(clear + clear));
+        let mut side = edges.side(simd, (a - inner.displacement, old), -(clear + clear));
         side.known &= link.length.simd_gt(2.0 * edges.half_thickness());
         (edges, side)
     });
@@ -192,9 +192,9 @@ pub fn resolve_segment_contact<S: Simd>(
             // as for points.
             let v = |i: usize| V3::load(simd, &tile.state[i][state::V..]);
             let (v_a, v_b) = (v(i - tile.layout.model.stride()), v(i));
-            let way = (v_b - v_a).mul_add(pressed.at, v_a) * F::splat(simd, step.h);
+            let displacement = (v_b - v_a).mul_add(pressed.at, v_a) * F::splat(simd, step.h);
             let carried = surface_displacement(simd, pose, e.mul_add(pressed.at, a));
-            let approach = pressed.normal.dot(carried - way).max(0.0);
+            let approach = pressed.normal.dot(carried - displacement).max(0.0);
             let mass = load(simd, &tile.rest[i][rest::MASS]);
             let rows = &mut tile.segment_contacts[i];
             let force = load(simd, &rows[segment_contact::FORCE]);
@@ -210,7 +210,7 @@ pub fn resolve_segment_contact<S: Simd>(
             }
             // Back along the surface, by at most μ times the depth.
             let carried = surface_displacement(simd, pose, e.mul_add(place.at, a));
-            let slide = (out - old).mul_add(place.at, inner.way) - carried;
+            let slide = (out - old).mul_add(place.at, inner.displacement) - carried;
             let tangent = slide - place.normal * place.normal.dot(slide);
             let hold = Friction::of(simd, step.h, tile, i).share(depth, tangent.dot(tangent));
             out = V3::select(first, link.clamp(out - tangent * hold), out);

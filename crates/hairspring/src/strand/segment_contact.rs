@@ -35,7 +35,7 @@ const STICK: f32 = 1.5;
 /// Adds the contact of the segment from point `i`, the first of the window, to the strand's next, which is in
 /// the window as well.
 ///
-/// `x` is the position of point `i` relative to the root, `drift` its predicted displacement, and `way` its
+/// `x` is the position of point `i` relative to the root, `drift` its predicted displacement, and `displacement` its
 /// displacement since the start of the substep, including `drift`. `stride` is the model's. It is a parameter
 /// so that the compiler knows which entries of the band are written; otherwise all of the band stays in
 /// memory.
@@ -44,7 +44,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     simd: S,
     (sweep, step, stride): (Linearization, &SubstepContext<S>, usize),
     tile: &mut Tile,
-    (i, x, drift, way): (usize, V3<S>, V3<S>, V3<S>),
+    (i, x, drift, displacement): (usize, V3<S>, V3<S>, V3<S>),
     system: &mut impl System<S, B>,
     (edges, contacts): (&[[Work; 3]], &mut [[Work; scratch::ROWS]]),
 ) {
@@ -95,9 +95,9 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     let faster = V3::load(simd, &tile.state[outer][state::V..]) - v;
     let h = F::splat(simd, step.h);
     let drifts = faster * h;
-    let (drift_more, way_more) =
+    let (drift_more, displacement_more) =
         if sweep == Linearization::Initial { (drifts, drifts) } else { (V3::zero(simd), e - old) };
-    let (drift, way) = (drift_more.mul_add(at, drift), way_more.mul_add(at, way));
+    let (drift, displacement) = (drift_more.mul_add(at, drift), displacement_more.mul_add(at, displacement));
     let along = |v: V3<S>| v - normal * normal.dot(v);
     let k = shut.select(m_h2 * STRETCH, zero);
     let before = faster.mul_add(at, v) * h;
@@ -114,7 +114,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     }
     let block = Sym3::outer(normal, k - stiffness).add_identity(stiffness);
     let push = normal * (force - k * (gap + normal.dot(drift)))
-        - (stretch + along(way + step.moved - carried)) * stiffness;
+        - (stretch + along(displacement + step.moved - carried)) * stiffness;
     let share = one - at;
     system.add_diagonal(0, block * (share * share));
     system.add_diagonal(stride, block * (at * at));

@@ -38,7 +38,7 @@ where
             moved: [zero; 3],
             unknowns: [F::<S>::splat(simd, 0.0); N],
             along: F::splat(simd, 0.0),
-            news: sweep.news(),
+            length_error_share: sweep.length_error_share(),
         },
         projection: Projection::begin(simd, tile, scratch.fixed),
     };
@@ -86,7 +86,7 @@ impl<S: Simd, const N: usize> BackSubstitution<S, N> {
             if M::PROFILE.is_far()
                 && let Some(across) = scratch.across.pop_if(|across| across.point == i)
             {
-                across.put_back(simd, M::PROFILE, &solved.unknowns, scratch.factors);
+                across.back_substitute(simd, M::PROFILE, &solved.unknowns, scratch.factors);
             }
             let factors = &scratch.factors[(i + Profile::<B, N>::REACH) * M::PROFILE.rows()..];
             back_substitute(simd, M::PROFILE, factors, &mut solved.unknowns);
@@ -95,7 +95,7 @@ impl<S: Simd, const N: usize> BackSubstitution<S, N> {
             let unknowns = &solved.unknowns;
             let drift = V3::load(simd, &tile.state[i][state::V..]) - *root_velocity;
             delta = V3 { x: unknowns[0], y: unknowns[1], z: unknowns[2] };
-            delta = drift.mul_add(F::splat(simd, sweep.predicted_displacement(step.h)), delta);
+            delta = drift.mul_add(F::splat(simd, sweep.prediction_time(step.h)), delta);
             if phase == 0 {
                 update_contact_multiplier(simd, step, tile, (i, delta), &scratch.contacts[i]);
             }

@@ -87,9 +87,9 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
         } else {
             band.eliminate(simd, profile, i, &mut factors);
         }
-        if let Some((u, c, k, longer)) = held.get(i).and_then(|held| held.across) {
+        if let Some((u, c, k, extension)) = held.get(i).and_then(|held| held.across) {
             let gradient = c.map(|c| splat(simd, u * c));
-            let across = BorderedConstraint { gradient, longer: f(longer), stiffness: f(k) };
+            let across = BorderedConstraint { gradient, extension: f(extension), stiffness: f(k) };
             eliminated.push(across.eliminate(simd, profile, i, &mut factors));
         }
     }
@@ -97,7 +97,7 @@ fn band_solve<S: Simd, const B: usize, const N: usize>(
     let mut out = vec![0.0; n * B];
     for i in (driven..n).rev() {
         if let Some(across) = eliminated.pop_if(|across| across.point == i) {
-            across.put_back(simd, profile, &unknowns, &mut factors);
+            across.back_substitute(simd, profile, &unknowns, &mut factors);
         }
         back_substitute(simd, profile, &factors[(i + reach) * rows..], &mut unknowns);
         (0..B).for_each(|k| out[i * B + k] = unknowns[k].lane(3) as f64);
@@ -167,12 +167,12 @@ proptest! {
         let unit = |u: DVec3| u.normalize_or_zero().as_vec3().as_dvec3();
         let held: Vec<Held> = far.into_iter().zip(across).take(points - 3).map(|((u, k, pull), across)| Held {
             far: (unit(u), rounded(k), pull),
-            across: across.map(|(u, c, k, longer)| (unit(u), c.map(rounded), rounded(k), longer)),
+            across: across.map(|(u, c, k, extension)| (unit(u), c.map(rounded), rounded(k), extension)),
         }).collect();
         let alone = (a.clone(), right.clone());
         for (i, Held { far: (u, k, pull), across }) in held.iter().enumerate() {
             let far = (*u, [1.0, 0.0, 0.0, -1.0], *k, *pull);
-            let across = across.map(|(u, c, k, longer)| (u, c, k, -k * longer));
+            let across = across.map(|(u, c, k, extension)| (u, c, k, -k * extension));
             for (u, c, k, force) in [Some(far), across].into_iter().flatten() {
                 let g = |r: usize| c[r / 3] * u[r % 3];
                 for r in 0..12 {

@@ -151,7 +151,7 @@ pub mod history {
     /// Velocity before the last substep [m/s], 3 rows.
     pub const V: usize = 0;
     /// Displacement in the last substep, in the world [m], 3 rows.
-    pub const WAY: usize = 3;
+    pub const DISPLACEMENT: usize = 3;
     /// Rows a point.
     pub const ROWS: usize = 6;
 }
@@ -169,7 +169,7 @@ pub mod hold {
     /// Stiffness of the spring to the target where the point is not pinned [N/m].
     pub const STIFFNESS: usize = 8;
     /// Displacement of the target in the frame [m], 3 rows.
-    pub const WAY: usize = 9;
+    pub const DISPLACEMENT: usize = 9;
     /// Rows.
     pub const ROWS: usize = 12;
 }
@@ -181,7 +181,7 @@ pub mod position_spring {
     /// Rate at which the point adopts the target's velocity [1/s].
     pub const BRAKE: usize = 1;
     /// Displacement of the target in the frame, times the stiffness [m/s²], 3 rows.
-    pub const WAY: usize = 2;
+    pub const DISPLACEMENT: usize = 2;
     /// Rows a point.
     pub const ROWS: usize = 5;
 }

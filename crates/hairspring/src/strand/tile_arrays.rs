@@ -1,5 +1,4 @@
-//! Declares the arrays of a tile once: from the list of its arrays, [`tile_arrays`] makes the tile, the range of
-//! tiles, the ways to split a range and to get a tile of it.
+//! [`tile_arrays`] generates the tile, the range of tiles, and their split and access methods from one list of arrays.
 //!
 //! ```text
 //! range   ├── tile 0 ──┼── tile 1 ──┼─ … ─┤

@@ -160,15 +160,15 @@ pub fn truss(particles: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
     if gravity != DVec3::ZERO {
         let mut pull: Vec<DVec3> = rest.iter().map(|p| gravity * p.mass).collect();
         for k in (3..n).rev() {
-            let way = [1, 2, 3].map(|j| x[k - j] - x[k]);
-            let towards = way.map(|w| w.normalize_or_zero());
+            let spans = [1, 2, 3].map(|j| x[k - j] - x[k]);
+            let towards = spans.map(|w| w.normalize_or_zero());
             let tension = tensions(towards, -pull[k]);
             for j in 0..3 {
                 pull[k - j - 1] -= towards[j] * tension[j];
             }
             rest[k - 1].normal.x = tension[0];
             let mut rest_length = |j: usize, stiffness: &mut f64, law: Progressive| {
-                let length = way[j].length();
+                let length = spans[j].length();
                 let needed = tension[j].abs() / (LARGEST_STRAIN * length);
                 if needed > *stiffness {
                     *stiffness = needed;
@@ -192,11 +192,11 @@ pub fn truss(particles: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
 #[inline(always)]
 pub fn beside<S: Simd>(simd: S, p: V3<S>, e: V3<S>, [length, inverse]: [F<S>; 2]) -> V3<S> {
     let middle = e * F::splat(simd, 0.5);
-    let way = p - middle;
+    let offset = p - middle;
     // Only the direction of the offset matters: w (u·u) − u (u·w) needs no division. Scaling by the rest
     // length keeps squares of short segments above zero.
     let u = e * inverse;
-    let (_, aside) = (way * u.dot(u) - u * u.dot(way)).length_and_unit();
+    let (_, aside) = (offset * u.dot(u) - u * u.dot(offset)).length_and_unit();
     aside.mul_add(length * ASIDE as f32, middle)
 }
 

@@ -181,8 +181,8 @@ impl Contact {
         }
     }
 
-    /// Runs one iteration of the contact. `sides` is computed when it is first needed.
-    pub fn solve(&mut self, sides: &mut Option<ContactResponse>, rules: &SolverParams, hair: &mut Hair) {
+    /// Runs one iteration of the contact. `response` is computed when it is first needed.
+    pub fn solve(&mut self, response: &mut Option<ContactResponse>, rules: &SolverParams, hair: &mut Hair) {
         let SolverParams { h, friction, stiction } = *rules;
         let velocity = self.velocity(hair);
         let along = self.normal.dot(velocity);
@@ -194,15 +194,15 @@ impl Contact {
         if bound == 0.0 && before == 0.0 && rubbed == Vec3::ZERO && along + aim >= 0.0 {
             return;
         }
-        let sides = sides.get_or_insert_with(|| ContactResponse::of(self, hair, h));
-        if sides.give <= 0.0 {
+        let response = response.get_or_insert_with(|| ContactResponse::of(self, hair, h));
+        if response.give <= 0.0 {
             return;
         }
-        let wanted = before - (along + aim) / sides.give;
+        let wanted = before - (along + aim) / response.give;
         let now = wanted.max(-bound);
 
         let across = velocity - self.normal * along + self.slip * (RECOVERY / h);
-        let wanted_across = rubbed - across / sides.give;
+        let wanted_across = rubbed - across / response.give;
         let cone = friction * now.max(0.0) + bound;
         let held = wanted_across.clamp_length_max(cone);
         // Without normal force there is no friction, and the contact does not count as sliding.
@@ -213,7 +213,7 @@ impl Contact {
         if change.is_finite() {
             self.impulse.along += now - before;
             self.impulse.across += held - rubbed;
-            sides.apply_impulse(change, hair);
+            response.apply_impulse(change, hair);
         }
     }
 

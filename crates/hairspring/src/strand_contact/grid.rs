@@ -17,7 +17,7 @@ const GROWTH: f32 = 1.25;
 
 /// Largest number of pairs for one segment. Collapsed hair has some tens of segments nearby. Hundreds
 /// coincide in one place, where each segment is in contact with many anyway.
-const MOST_FOUND: usize = 256;
+const MAX_FOUND: usize = 256;
 
 /// Largest cell coordinate, 2³⁰ in each direction. Farther cells are merged.
 const FARTHEST: f32 = (1 << 30) as f32;
@@ -66,7 +66,7 @@ pub struct Grid {
     found: Vec<u32>,
     /// Number of pairs that the last [`Grid::pairs`] tested.
     pub looked_at: usize,
-    /// Number of segments with more than [`MOST_FOUND`] neighbors.
+    /// Number of segments with more than [`MAX_FOUND`] neighbors.
     pub crowded: usize,
 }
 
@@ -79,7 +79,7 @@ impl Grid {
             segments: Vec::with_capacity(segments),
             first: vec![0; buckets + 1],
             entries: vec![(IVec3::ZERO, 0); CELLS_A_SEGMENT * segments],
-            found: Vec::with_capacity(MOST_FOUND),
+            found: Vec::with_capacity(MAX_FOUND),
             looked_at: 0,
             crowded: 0,
         }
@@ -165,7 +165,7 @@ impl Grid {
     /// Calls `see` with each pair of segments of different strands whose boxes may overlap before the next
     /// call. Pairs are sorted, with the lower index first.
     ///
-    /// For a segment with more than [`MOST_FOUND`] neighbors after it, only that number is passed: neighbors
+    /// For a segment with more than [`MAX_FOUND`] neighbors after it, only that number is passed: neighbors
     /// from the first cells that the segment overlaps.
     pub fn pairs(&mut self, hair: &Hair, mut see: impl FnMut([u32; 2])) {
         let Self { cell, segments, first, entries, found, looked_at, crowded } = self;
@@ -189,7 +189,7 @@ impl Grid {
                         && cell_of(*cell, low) == c
                         && hair.of[other.segment as usize] != hair.of[of.segment as usize]
                     {
-                        if found.len() == MOST_FOUND {
+                        if found.len() == MAX_FOUND {
                             *crowded += 1;
                             break 'cells;
                         }

@@ -61,13 +61,13 @@ use contact::{ContactResponse, SolverParams};
 use glam::{Mat3, Quat, Vec3};
 use grid::Grid;
 
-/// Iterations over all contacts after a substep. More would help in piles; the rest of an approach is carried
-/// into the next substep.
+/// Iterations over all contacts after a substep. More would help in piles; the remaining approach velocity is
+/// corrected in the next substep.
 const SWEEPS: usize = 8;
 
 /// Largest number of contacts for each segment. In a bundle, each segment is next to three segments of each
 /// of six neighbors, and each contact counts once for both.
-const MOST_CONTACTS: usize = 16;
+const MAX_CONTACTS_PER_SEGMENT: usize = 16;
 
 /// State of the strand contacts, and working memory.
 pub(crate) struct Neighbours {
@@ -83,7 +83,7 @@ pub(crate) struct Neighbours {
     contacts: Vec<Contact>,
     before: Vec<Contact>,
     /// Responses of each contact, computed when first needed.
-    sides: Vec<Option<ContactResponse>>,
+    responses: Vec<Option<ContactResponse>>,
 }
 
 /// Statistics of the strand contacts.
@@ -119,7 +119,7 @@ impl Neighbours {
         }
         let mut grid = Grid::new(hair.segments().count());
         let radius = rest::find_radii(settings.radius, &mut hair, &mut grid);
-        let most = MOST_CONTACTS * hair.segments().count();
+        let most = MAX_CONTACTS_PER_SEGMENT * hair.segments().count();
         Some(Self {
             settings: *settings,
             radius,
@@ -129,7 +129,7 @@ impl Neighbours {
             grid,
             contacts: Vec::with_capacity(most),
             before: Vec::with_capacity(most),
-            sides: Vec::with_capacity(most),
+            responses: Vec::with_capacity(most),
         })
     }
 
@@ -156,13 +156,13 @@ impl Neighbours {
     pub fn bytes(&self) -> usize {
         self.hair.bytes()
             + self.grid.bytes()
-            + MOST_CONTACTS
+            + MAX_CONTACTS_PER_SEGMENT
                 * self.hair.segments().count()
                 * (2 * size_of::<Contact>() + size_of::<Option<ContactResponse>>())
     }
 
     /// Removes all contacts, after strands have been moved elsewhere.
-    pub fn forget(&mut self) {
+    pub fn clear(&mut self) {
         self.contacts.clear();
     }
 
@@ -184,7 +184,7 @@ impl Neighbours {
     }
 
     /// Returns whether any strand touches another.
-    pub fn touch(&self) -> bool {
+    pub fn has_contact(&self) -> bool {
         self.contacts.iter().any(|contact| contact.presses() || contact.holds())
     }
 
@@ -204,7 +204,7 @@ impl Neighbours {
     /// Finds the contacts of `hair` after a substep of `h` [s], and changes velocities so that no segments
     /// overlap after the next.
     pub fn solve_contacts(&mut self, h: f32) {
-        let Self { hair, grid, along, contacts, before, sides, .. } = self;
+        let Self { hair, grid, along, contacts, before, responses, .. } = self;
         std::mem::swap(contacts, before);
         contacts.clear();
         grid.sort(hair, h);
@@ -220,14 +220,14 @@ impl Neighbours {
         });
         self.crowded = self.crowded.max(grid.crowded);
         let rules = SolverParams { h, friction: self.settings.friction, stiction: self.settings.stiction };
-        sides.clear();
-        sides.resize_with(contacts.len(), || None);
+        responses.clear();
+        responses.resize_with(contacts.len(), || None);
         along.begin(hair);
         for _ in 0..SWEEPS {
             contacts
                 .iter_mut()
-                .zip(&mut *sides)
-                .for_each(|(contact, sides)| contact.solve(sides, &rules, hair));
+                .zip(&mut *responses)
+                .for_each(|(contact, responses)| contact.solve(responses, &rules, hair));
             along.keep_lengths(hair);
         }
         contacts.iter_mut().for_each(|contact| contact.carry(&rules));

@@ -48,7 +48,7 @@ fn momentum_is_kept() {
         hair,
         contacts: Vec::with_capacity(16 * segments),
         before: Vec::with_capacity(16 * segments),
-        sides: Vec::with_capacity(16 * segments),
+        responses: Vec::with_capacity(16 * segments),
     };
     for substep in 0..5 {
         neighbours.solve_contacts(1.0 / 240.0);

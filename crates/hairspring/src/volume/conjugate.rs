@@ -103,7 +103,7 @@ impl Solve {
     }
 
     /// Discards the warm start of the next system.
-    pub fn forget(&mut self) {
+    pub fn clear(&mut self) {
         self.pressure.clear();
     }
 

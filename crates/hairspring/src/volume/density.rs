@@ -15,7 +15,7 @@ use crate::parallel::prelude::*;
 use glam::Vec3;
 
 /// Largest excess that the pressure takes into account [1].
-pub const MOST_EXCESS: f32 = 1.0;
+pub const MAX_EXCESS: f32 = 1.0;
 
 /// Minimum time for a pressure wave to cross a cell, in intervals. The pressure is computed at the start of
 /// an interval and acts during it, so faster waves grow (Courant, Friedrichs, Lewy 1928). Diagonal waves are
@@ -37,7 +37,7 @@ pub fn pressures(field: &Field, excess: impl Fn(usize) -> f32 + Sync, pressures:
         for (c, p) in out.iter_mut().enumerate().take(cells) {
             let cell = first + c;
             if field.fill[cell] > 1.0 {
-                let excess = excess(cell).min(MOST_EXCESS);
+                let excess = excess(cell).min(MAX_EXCESS);
                 if excess > 0.0 {
                     let mass = corners.iter().map(|k| field.nodes[cell + k][3]);
                     *p = excess * mass.fold(f32::INFINITY, f32::min);

@@ -2,7 +2,7 @@
 
 use super::{
     grid_bounds::GridBounds,
-    splat::{NODE, ROOM, Sums, Units},
+    splat::{NODE, REST_VOLUME_UNITS, Sums, Units},
 };
 use crate::parallel::prelude::*;
 
@@ -82,7 +82,7 @@ impl Field {
                 for (n, rest_volume) in rest_volumes.iter_mut().enumerate() {
                     let sum =
                         sums.iter().fold(0_u32, |sum, own| sum.saturating_add(own.rest_volumes[first + n]));
-                    *rest_volume = sum as f32 * (1.0 / ROOM);
+                    *rest_volume = sum as f32 * (1.0 / REST_VOLUME_UNITS);
                 }
             },
         );

@@ -64,8 +64,8 @@ impl Projection {
     }
 
     /// Discards the warm start of the next projection.
-    pub fn forget(&mut self) {
-        self.solve.forget();
+    pub fn clear(&mut self) {
+        self.solve.clear();
     }
 
     /// Computes the change of the velocities of `field`. `to_lattice` rotates a node's velocity to the grid's

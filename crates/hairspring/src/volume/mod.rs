@@ -70,13 +70,13 @@ use field::Field;
 use glam::{Mat3, Vec3};
 use grid_bounds::{GridBounds, GridTransform};
 use incompressible::Projection;
-use rest::Rest;
+use rest::{Rest, RestSpacing};
 pub(crate) use sample::Density;
 use splat::{Extent, OwnRows, Sums, Tiles, Units, own};
 
 /// Maximum number of nodes: enough for a head of long hair spread in every direction, in cells of a
 /// centimeter. It takes 75 MB for each thread.
-const MOST_NODES: f32 = (1 << 21) as f32;
+const MAX_NODES: f32 = (1 << 21) as f32;
 
 /// Number of nodes beyond the hair, along each axis [cells].
 const RING: f32 = 6.0;
@@ -85,7 +85,7 @@ const RING: f32 = 6.0;
 const FARTHEST: f32 = (1 << 22) as f32;
 
 /// Maximum number of threads that sum separately: each has a grid, and the grids must be added up.
-const MOST_GRIDS: usize = 8;
+const MAX_GRIDS: usize = 8;
 
 /// The hair volume of some simulated strands: measurements at rest, and buffers.
 pub(crate) struct Volume {
@@ -180,20 +180,21 @@ impl Volume {
             .mass
             .iter()
             .map(|m| {
-                [m.0.map(|m| m / largest), m.0.map(|m| (m / largest * splat::ROOM / 8.0).ceil())].map(Row)
+                [m.0.map(|m| m / largest), m.0.map(|m| (m / largest * splat::REST_VOLUME_UNITS / 8.0).ceil())]
+                    .map(Row)
             })
             .collect();
         let tiles = Tiles { firsts: &at.firsts, roots: at.roots, state: at.state, own: &own };
-        let grain = rest::grain(&tiles, &at.anchor, at.segment.max(1e-4));
-        let requested = settings.cell.unwrap_or(grain.cell);
+        let rest_spacing = RestSpacing::measure(&tiles, &at.anchor, at.segment.max(1e-4));
+        let requested = settings.cell.unwrap_or(rest_spacing.cell);
         // Hair reaches no farther from its roots than its length.
         let extent = Extent::of(&tiles, &GridTransform::new(&at.anchor, 1.0), Vec3::ZERO);
         let reach = rest::reach((extent.lo, extent.hi), at.length);
         let size = (reach.1 - reach.0).max(Vec3::splat(requested));
-        let mut cell = requested.max((size.element_product() / (0.5 * MOST_NODES)).cbrt());
+        let mut cell = requested.max((size.element_product() / (0.5 * MAX_NODES)).cbrt());
         // If hair is in two places far apart, most of the grid is the ring.
         let farthest = reach.0.abs().max(reach.1.abs()).max_element();
-        while (size / cell + RING + 1.0).element_product() > MOST_NODES || farthest / cell > FARTHEST {
+        while (size / cell + RING + 1.0).element_product() > MAX_NODES || farthest / cell > FARTHEST {
             cell *= 1.1;
         }
         let masses = || own.iter().flat_map(|o| o[own::MASS].0).filter(|m| *m > 0.0);
@@ -204,7 +205,7 @@ impl Volume {
             grown: cell > requested,
             reach,
             length: at.length,
-            spacing: grain.spacing,
+            spacing: rest_spacing.spacing,
             per_mass: at.segment * (points as f64 / total) as f32,
             acceleration: vec![
                 [Row::default(); 3];
@@ -223,7 +224,7 @@ impl Volume {
         };
         volume.reserve();
         let work = (&mut volume.sums[0], &mut volume.field);
-        let cells = (&at.anchor, cell, grain.cell);
+        let cells = (&at.anchor, cell, rest_spacing.cell);
         volume.rest.measure((at.roots, at.state, &volume.firsts), &mut own, cells, work);
         volume.own = own;
         volume.taken_up = [fill_ratio(&volume.field.fill); 2];
@@ -234,7 +235,7 @@ impl Volume {
     /// no step allocates.
     fn reserve(&mut self) {
         let nodes = self.most_nodes();
-        let grids = crate::parallel::current_num_threads().clamp(1, MOST_GRIDS);
+        let grids = crate::parallel::current_num_threads().clamp(1, MAX_GRIDS);
         if self.sums.len() < grids {
             self.sums.resize_with(grids, Sums::default);
             self.sums.iter_mut().for_each(|sums| sums.reserve(nodes));
@@ -288,7 +289,7 @@ impl Volume {
         let reach = rest::reach((extent.roots[0], extent.roots[1]), self.length / self.cell);
         let [mut lo, mut hi] = within([rest[0].min(reach.0), rest[1].max(reach.1)]);
         let far = lo.abs().max(hi.abs()).max_element();
-        if (hi - lo + RING).element_product() > MOST_NODES || far > FARTHEST {
+        if (hi - lo + RING).element_product() > MAX_NODES || far > FARTHEST {
             [lo, hi] = within(rest);
         }
         GridBounds::around(lo, hi)
@@ -298,7 +299,7 @@ impl Volume {
     /// previous interval, except for the first of a frame, so that a frame depends only on positions and
     /// velocities.
     pub fn begin_frame(&mut self) {
-        self.projection.forget();
+        self.projection.clear();
         self.acceleration.fill([Row::default(); 3]);
     }
 
@@ -375,9 +376,7 @@ impl Volume {
         };
         let regain = self.settings.recovery_rate.min(1.0 / dt);
         let wanted = |c: usize| {
-            4.0 * cell
-                * regain
-                * rest.over_density(&bounds, c, field.fill[c]).clamp(0.0, density::MOST_EXCESS)
+            4.0 * cell * regain * rest.over_density(&bounds, c, field.fill[c]).clamp(0.0, density::MAX_EXCESS)
         };
         self.projection.project(field, to_lattice, wanted);
         let brakes = (brakes::friction(&self.settings, dt), self.crossing(dt));

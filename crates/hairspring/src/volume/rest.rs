@@ -3,7 +3,7 @@
 use super::{
     field::Field,
     grid_bounds::{GridBounds, GridTransform, Placed},
-    splat::{Extent, OwnRows, ROOM, Sums, Tiles, Units, own},
+    splat::{Extent, OwnRows, REST_VOLUME_UNITS, Sums, Tiles, Units, own},
 };
 use crate::parallel::prelude::*;
 use crate::{
@@ -19,14 +19,14 @@ const POINTS_A_CELL: f32 = 8.0;
 
 /// Largest rest volume of a point [cells]: a single point fills its own cell and a third of the surrounding
 /// ones.
-const MOST_ROOM: f32 = 4.0;
+const MAX_REST_VOLUME: f32 = 4.0;
 
 /// Fill ratio above which a cell counts as overfull [1]. It exceeds the variation from hair that moves
 /// through the cells, and is hardly visible.
 const SLACK: f32 = 1.1;
 
 /// The distribution of hair at rest.
-pub struct Grain {
+pub struct RestSpacing {
     /// Smallest cell that holds [`POINTS_A_CELL`] points on average and is no smaller than the mean segment
     /// [m].
     pub cell: f32,
@@ -34,39 +34,41 @@ pub struct Grain {
     pub spacing: f32,
 }
 
-/// Measures the distribution of hair at rest, with a mean segment of `segment` [m], above 0.
-///
-/// The spacing is that of the strands around an average point. With N points in a cell of edge c, the length
-/// of other strands per volume around it is n = ℓ Σ N (N − 1) / (c³ Σ N). Then n strands pass through a unit
-/// cross-section, at a spacing of 1/√n.
-pub fn grain(tiles: &Tiles, anchor: &RigidTransform, segment: f32) -> Grain {
-    let (mut cell, mut spacing) = (segment, segment);
-    let mut occupied: Vec<u64> = Vec::new();
-    for _ in 0..64 {
-        let transform = GridTransform::new(anchor, cell);
-        occupied.clear();
-        for (roots, state, own) in tiles.iter() {
-            let mut places = transform.roots(roots, IVec3::ZERO);
-            for (at, own) in state.iter().zip(own) {
-                transform.advance(&mut places, at);
-                for lane in (0..LANES).filter(|lane| own[own::MASS].0[*lane] > 0.0) {
-                    let key = |k: usize| (places[k][lane].floor() as i64 & 0x1f_ffff) as u64;
-                    occupied.push(key(2) << 42 | key(1) << 21 | key(0));
+impl RestSpacing {
+    /// Measures the distribution of hair at rest, with a mean segment of `segment` [m], above 0.
+    ///
+    /// The spacing is that of the strands around an average point. With N points in a cell of edge c, the length
+    /// of other strands per volume around it is n = ℓ Σ N (N − 1) / (c³ Σ N). Then n strands pass through a unit
+    /// cross-section, at a spacing of 1/√n.
+    pub fn measure(tiles: &Tiles, anchor: &RigidTransform, segment: f32) -> Self {
+        let (mut cell, mut spacing) = (segment, segment);
+        let mut occupied: Vec<u64> = Vec::new();
+        for _ in 0..64 {
+            let transform = GridTransform::new(anchor, cell);
+            occupied.clear();
+            for (roots, state, own) in tiles.iter() {
+                let mut places = transform.roots(roots, IVec3::ZERO);
+                for (at, own) in state.iter().zip(own) {
+                    transform.advance(&mut places, at);
+                    for lane in (0..LANES).filter(|lane| own[own::MASS].0[*lane] > 0.0) {
+                        let key = |k: usize| (places[k][lane].floor() as i64 & 0x1f_ffff) as u64;
+                        occupied.push(key(2) << 42 | key(1) << 21 | key(0));
+                    }
                 }
             }
+            let points = occupied.len() as f32;
+            occupied.par_sort_unstable();
+            let cells = || occupied.chunk_by(|a, b| a == b).map(|cell| cell.len() as f64);
+            let (count, pairs) = (cells().count(), cells().map(|n| n * (n - 1.0)).sum::<f64>());
+            let density = segment * pairs as f32 / (cell.powi(3) * points);
+            spacing = density.sqrt().recip().min(cell);
+            if points >= POINTS_A_CELL * count as f32 || count <= 1 {
+                break;
+            }
+            cell *= 1.1;
         }
-        let points = occupied.len() as f32;
-        occupied.par_sort_unstable();
-        let cells = || occupied.chunk_by(|a, b| a == b).map(|cell| cell.len() as f64);
-        let (count, pairs) = (cells().count(), cells().map(|n| n * (n - 1.0)).sum::<f64>());
-        let density = segment * pairs as f32 / (cell.powi(3) * points);
-        spacing = density.sqrt().recip().min(cell);
-        if points >= POINTS_A_CELL * count as f32 || count <= 1 {
-            break;
-        }
-        cell *= 1.1;
+        Self { cell, spacing }
     }
-    Grain { cell, spacing }
 }
 
 /// Fill of the cells at rest, where that is above 1.
@@ -85,7 +87,7 @@ impl Rest {
     }
 
     /// Computes the rest volume of every point, such that hair at rest fills the cells that it occupies.
-    /// These are cells of `grain` [m], or of the grid if its `cell` [m] is smaller. Then stores the fill of
+    /// These are cells of `fine_cell` [m], or of the grid if its `cell` [m] is smaller. Then stores the fill of
     /// the grid's cells at rest.
     ///
     /// A rest volume should be the space between strands, wherever the bundle lies in the grid. Rest volumes
@@ -96,11 +98,11 @@ impl Rest {
         &mut self,
         tiles: (&[RootRows], &[StateRows], &[u32]),
         own: &mut [OwnRows],
-        (anchor, cell, grain): (&RigidTransform, f32, f32),
+        (anchor, cell, fine_cell): (&RigidTransform, f32, f32),
         (sums, field): (&mut Sums, &mut Field),
     ) {
         let (roots, state, firsts) = tiles;
-        let fine = cell.min(grain);
+        let fine = cell.min(fine_cell);
         let transform = GridTransform::new(anchor, fine);
         // Volume of a fine cell in units of the grid's cell.
         let share = (fine / cell).powi(3);
@@ -112,11 +114,14 @@ impl Rest {
             for i in first[0] as usize..first[1] as usize {
                 transform.advance(&mut places, &state[i]);
                 let placed = Placed::new(&places, &bounds);
-                let rest_volume = &mut own[i][own::ROOM].0;
+                let rest_volume = &mut own[i][own::REST_VOLUME].0;
                 for (rest_volume, cell) in rest_volume.iter_mut().zip(placed.cell) {
                     let fill = field.fill[cell as usize];
                     if *rest_volume > 0.0 && fill > 0.0 {
-                        *rest_volume = ((*rest_volume / fill).min(MOST_ROOM * ROOM) * share).round().max(1.0);
+                        *rest_volume = ((*rest_volume / fill).min(MAX_REST_VOLUME * REST_VOLUME_UNITS)
+                            * share)
+                            .round()
+                            .max(1.0);
                     }
                 }
             }

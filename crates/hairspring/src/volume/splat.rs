@@ -14,8 +14,8 @@ use glam::{IVec3, Vec3};
 pub mod own {
     /// Mass relative to the largest point's; 0 for particles that are not points of a strand [1].
     pub const MASS: usize = 0;
-    /// Rest volume of the point, an integer in units of 1/[`super::ROOM`] of a cell.
-    pub const ROOM: usize = 1;
+    /// Rest volume of the point, an integer in units of 1/[`super::REST_VOLUME_UNITS`] of a cell.
+    pub const REST_VOLUME: usize = 1;
     /// Number of rows per point.
     pub const ROWS: usize = 2;
 }
@@ -25,7 +25,7 @@ pub type OwnRows = [Row; own::ROWS];
 
 /// Units of rest volume per cell. A typical point has an eighth of a cell, so its contribution to each corner
 /// is accurate to 1/10,000, and to a tenth if cells are ten times as large.
-pub const ROOM: f32 = 524288.0;
+pub const REST_VOLUME_UNITS: f32 = 524288.0;
 
 /// Limit of the speed [m/s], so that a single unstable strand does not reduce the precision of the others.
 const FASTEST: f32 = 50.0;
@@ -166,7 +166,7 @@ pub struct Units {
 }
 
 /// Maximum number of units in a point, since [`nearest`] rounds them.
-const MOST_UNITS: f32 = (1 << 21) as f32;
+const MAX_UNITS: f32 = (1 << 21) as f32;
 
 impl Units {
     /// Chooses units as fine as possible without overflow, even if one node held all `points`, with a `total`
@@ -175,7 +175,7 @@ impl Units {
     pub fn new(points: usize, total: f64, (speed, carried): (f32, Vec3)) -> Self {
         // Each may be rounded up by half a unit.
         let most = (f64::from(i32::MAX) - 0.5 * points as f64) / total.max(1.0);
-        let mass = (most.max(1.0).log2().floor().exp2() as f32).min(MOST_UNITS);
+        let mass = (most.max(1.0).log2().floor().exp2() as f32).min(MAX_UNITS);
         let speed = speed.max(f32::MIN_POSITIVE.sqrt());
         Self { mass, momentum: mass / speed, energy: mass / (3.0 * speed * speed), speed, carried }
     }
@@ -231,7 +231,7 @@ impl Sums {
                 let mut rest_volume = [0.0; LANES];
                 for lane in 0..LANES {
                     counted[3][lane] = own[own::MASS].0[lane] * there[lane] * units.mass;
-                    rest_volume[lane] = own[own::ROOM].0[lane] * there[lane];
+                    rest_volume[lane] = own[own::REST_VOLUME].0[lane] * there[lane];
                     let edge = [0, 1, 2].map(|k: usize| at[state::EDGE + k].0[lane]);
                     let length = (edge[0] * edge[0] + edge[1] * edge[1] + edge[2] * edge[2]).sqrt();
                     // The edge vector to a root has no direction.

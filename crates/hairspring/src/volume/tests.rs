@@ -128,7 +128,7 @@ fn a_rest_is_left_alone_in_every_pose_of_the_head() {
 }
 
 #[test]
-fn what_moves_together_is_not_braked() {
+fn common_motion_is_not_braked() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
@@ -189,7 +189,7 @@ fn pressure_and_friction_keep_momentum() {
 }
 
 #[test]
-fn what_is_squeezed_is_pressed_apart() {
+fn squeezed_hair_is_pushed_apart() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);
@@ -256,7 +256,7 @@ fn threads_do_not_show() {
 }
 
 #[test]
-fn what_is_not_finite_does_not_count() {
+fn non_finite_points_do_not_count() {
     for method in METHODS {
         let mut bundle = Bundle::new();
         let mut volume = bundle.volume(method);

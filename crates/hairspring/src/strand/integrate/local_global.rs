@@ -146,14 +146,14 @@ fn iterate<S: Simd>(
         let mut e0 = V3::load(simd, &scratch.edges[1]);
         let mut u0 = e0.length_and_unit().1;
         // Displacement of the point since the start of the substep.
-        let mut way = zero;
+        let mut displacement = zero;
         let mut normal = step.root.normal;
         let mut b = [zero; 3];
         for i in 0..n {
             if i + 1 < n {
                 let [alpha, beta, stretch, bend] = weights(simd, step.h, tile, i);
                 let e1 = if i + 2 < n { V3::load(simd, &scratch.edges[i + 2]) } else { zero };
-                way += e0 - V3::load(simd, &tile.state[i + 1][state::EDGE..]);
+                displacement += e0 - V3::load(simd, &tile.state[i + 1][state::EDGE..]);
                 let u1 = e1.length_and_unit().1;
                 let turn = V3::load(simd, &tile.rest[i + 1][rest::TURN..]);
                 let d = turn_in_frame(turn, normal, u0);
@@ -169,7 +169,7 @@ fn iterate<S: Simd>(
                 b[2] -= pull;
                 if i >= 1 {
                     let mass = load(simd, &tile.rest[i + 1][rest::MASS]);
-                    b[1] += (V3::load(simd, &scratch.kick[i + 1]) - way) * (mass * inv_h2);
+                    b[1] += (V3::load(simd, &scratch.kick[i + 1]) - displacement) * (mass * inv_h2);
                 }
                 normal = V3::select(real, transport(normal, u0, u1), normal);
                 (e0, u0) = (e1, V3::select(real, u1, u0));

@@ -142,7 +142,7 @@ fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u
     if let Some(rows) = tile.position_spring.get(i) {
         let (stiffness, brake) =
             (load(simd, &rows[position_spring::STIFFNESS]), load(simd, &rows[position_spring::BRAKE]));
-        let late = V3::load(simd, &rows[position_spring::WAY..]) * F::splat(simd, step.left);
+        let late = V3::load(simd, &rows[position_spring::DISPLACEMENT..]) * F::splat(simd, step.left);
         pulled = pulled - late - (x + v * h - step.moved) * stiffness - v * brake;
         yielding += (stiffness * h + brake) * h;
     }
@@ -168,7 +168,7 @@ const TOUCHED: f32 = 0.1;
 /// contact. Otherwise it would gain speed from each bounce.
 #[inline(always)]
 fn touching<S: Simd>(simd: S, frame: &FrameContext, colliders: &[ColliderPose], tile: &mut Tile) -> Mask<S> {
-    let mut most = F::<S>::splat(simd, if frame.meets { 1.0 } else { 0.0 });
+    let mut most = F::<S>::splat(simd, if frame.hair_contact { 1.0 } else { 0.0 });
     if !colliders.is_empty() {
         for rows in tile.state.iter() {
             most = most.max(load(simd, &rows[state::NORMAL_FORCE]));

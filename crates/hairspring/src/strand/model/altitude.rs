@@ -46,7 +46,7 @@ pub fn across<S: Simd>(
     let rest = &tile.rest[i];
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
     let k = flattened(p, rest).select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
-    let (direction, c, longer) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
+    let (direction, c, extension) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
     let damping = tile.at_particle(Root::<S>::fiber(simd, tile.strand).1, i, along::DAMPING);
     let damped = damping * (1.0 / h) + 1.0;
     // Elements beyond the tip have no stiffness, so the clamped index does no harm.
@@ -57,8 +57,8 @@ pub fn across<S: Simd>(
         let v = V3::load(simd, &tile.state[(i + far).min(tip)][state::V..]);
         drift = (v - v0).mul_add(c, drift);
     }
-    let longer = direction.dot(drift).mul_add(F::splat(simd, drifting), longer / damped);
-    BorderedConstraint { gradient: c.map(|c| direction * c), longer, stiffness: k * damped }
+    let extension = direction.dot(drift).mul_add(F::splat(simd, drifting), extension / damped);
+    BorderedConstraint { gradient: c.map(|c| direction * c), extension, stiffness: k * damped }
 }
 
 /// The heights of a tetrahedron: the points p, q, r, v, and whether the height goes from the face pqr to v

@@ -41,8 +41,8 @@ pub struct At<S: Simd> {
     pub inverse_length: [F<S>; 2],
     /// 1 + τ/h: the factor by which damping with relaxation time τ stiffens bending in the matrix.
     pub damped: F<S>,
-    /// The share of the current length errors that is added to the tensions; see `Linearization::news`.
-    pub news: f32,
+    /// The share of the current length errors that is added to the tensions; see `Linearization::length_error_share`.
+    pub length_error_share: f32,
     /// Predicted changes of the segments from their points' velocities, up to the starting point of the solve
     /// [m].
     pub drift: [V3<S>; 2],
@@ -67,8 +67,8 @@ pub struct Solved<S: Simd, const N: usize> {
     /// Stiffness of the spring along the strand's segment at this particle [N/m].
     pub along: F<S>,
     /// The share of the length errors before the solve that is added to the tensions; see
-    /// `Linearization::news`.
-    pub news: f32,
+    /// `Linearization::length_error_share`.
+    pub length_error_share: f32,
 }
 
 impl<S: Simd, const N: usize> Solved<S, N> {
@@ -81,7 +81,7 @@ impl<S: Simd, const N: usize> Solved<S, N> {
         let u = (if far == 1 { edge } else { edge + next }) * inverse;
         // Clamped, because C grows quadratically where a root has jumped.
         let longer = length * u.dot(u).min(4.0).mul_add(0.5, F::splat(k.simd, -0.5));
-        k * longer.mul_add(self.news, u.dot(self.moved[far] - self.moved[0]))
+        k * longer.mul_add(self.length_error_share, u.dot(self.moved[far] - self.moved[0]))
     }
 }
 

@@ -67,19 +67,19 @@ pub const FOLDING: f32 = 0.25;
 const CURVED: f32 = 0.125;
 
 /// Lower bound of the factor of a joint's twisting stiffness for natural curvature [1].
-const MOST_CURVED: f32 = 0.5;
+const MAX_CURVED: f32 = 0.5;
 
 /// Factor of a joint's twisting stiffness for natural curvature: 1 − (1 − cos θ⁰)/8 with the rest turn θ⁰
 /// [1]. `along` is the component of the rest turn along the segment before, cos θ⁰ − 1.
 #[inline(always)]
 pub fn curved<S: Simd>(along: F<S>) -> F<S> {
     let one = F::<S>::splat(along.simd, 1.0);
-    along.mul_add(CURVED, one).max(MOST_CURVED)
+    along.mul_add(CURVED, one).max(MAX_CURVED)
 }
 
 /// The same for one joint in double precision.
 pub fn curved_joint(along: f64) -> f64 {
-    (1.0 + f64::from(CURVED) * along).max(f64::from(MOST_CURVED))
+    (1.0 + f64::from(CURVED) * along).max(f64::from(MAX_CURVED))
 }
 
 /// Polar inertia of a frame over mass [m²], which bounds the diagonal of the angles from below: r²/2 of a

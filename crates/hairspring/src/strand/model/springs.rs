@@ -91,8 +91,10 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
         let k = load(simd, &scratch.fixed[i - at.phase].along);
         let (l, u) = p[0].length_and_unit();
         let tension = load(simd, &tile.state[i][springs::SIDE]);
-        let pull =
-            k.mul_add((l - load(simd, &tile.rest[i - at.phase + 1][springs::SIDES])) * at.news, tension);
+        let pull = k.mul_add(
+            (l - load(simd, &tile.rest[i - at.phase + 1][springs::SIDES])) * at.length_error_share,
+            tension,
+        );
         add_spring(band, 1, u, k, k.mul_add(u.dot(drift(1)) * at.drifting, pull));
 
         // The second particle after a point is the strand's next point. That spring is the segment's and is
