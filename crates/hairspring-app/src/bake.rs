@@ -1,8 +1,9 @@
 //! Writes the hair of the scene to groom files: that of the current frame, or a range of frames on a thread of
-//! its own, as `hairspring bake` does.
+//! its own, as `hairspring bake` does. Its manifest is the same, so that `hairspring bake --resume` continues a bake
+//! of the window if the scene is saved as it was baked.
 
 use crate::{AppError, destination::destination, document::Source, snapshot::StageSnapshot};
-use hairspring_io::{Format, FrameWriter};
+use hairspring_io::{Format, FrameWriter, Manifest, Origin};
 use hairspring_scene::stage::{FrameRate, Stage};
 use hairspring_view::sequence_path;
 use std::{
@@ -105,11 +106,23 @@ fn run(
     wake: &(impl Fn() + Sync),
 ) -> Result<String, AppError> {
     let BakeRequest { path, frames: [first, last], rate } = request;
-    let mut stage = Stage::new(source.load()?.value)?;
+    let (loaded, inputs) = source.load_and_record()?;
+    let mut stage = Stage::new(loaded.value)?;
     let (mut writer, mut notes) = FrameWriter::new(stage.strands().map(|s| s.groom.into()));
+    let file = |frame| sequence_path(path, frame).unwrap_or_else(|| path.clone());
+    let mut manifest = None;
+    if sequence_path(path, 1).is_some() {
+        let origin = Origin::new("bake", &[("fps", Some(rate.to_string()))], inputs);
+        let (mut begun, note) = Manifest::begin(path, origin, false)?;
+        notes.extend(note);
+        begun.will_replace((*first..=*last).map(file));
+        begun.write()?;
+        manifest = Some(begun);
+    }
     let mut written = 0;
     for frame in 1..=*last {
         if shared.cancelled.load(Relaxed) {
+            manifest.as_mut().map_or(Ok(()), Manifest::write)?;
             return Ok(format!(
                 "the bake stopped after {} of {last} frames; {written} files are complete",
                 frame - 1
@@ -119,15 +132,17 @@ fn run(
             stage.step_frame(*rate);
         }
         if frame >= *first {
-            let file = sequence_path(path, frame).unwrap_or_else(|| path.clone());
+            let file = file(frame);
             writer
                 .write(&file, stage.time(), stage.strands().map(|s| s.points))
                 .map_err(|why| AppError::new(why.to_string()))?;
+            manifest.as_mut().map_or(Ok(()), |manifest| manifest.finished(&file))?;
             written += 1;
         }
         shared.done.store(frame, Relaxed);
         wake();
     }
+    manifest.as_mut().map_or(Ok(()), Manifest::write)?;
     notes.insert(0, format!("baked {}: {written} frames", path.display()));
     Ok(notes.join("; "))
 }

@@ -21,6 +21,12 @@ impl From<hairspring_io::Error> for AppError {
     }
 }
 
+impl From<hairspring_io::ManifestError> for AppError {
+    fn from(error: hairspring_io::ManifestError) -> Self {
+        Self(error.to_string())
+    }
+}
+
 impl From<StageError> for AppError {
     fn from(error: StageError) -> Self {
         Self(error.to_string())

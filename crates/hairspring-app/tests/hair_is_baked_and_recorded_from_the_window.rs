@@ -1,18 +1,29 @@
 //! Promise: the window bakes what the library plays, bit for bit, also with changes that are not saved. It
-//! exports the current frame, and records at any size and rate. A bake that is stopped leaves complete files.
+//! exports the current frame, and records at any size and rate. A bake that is stopped leaves complete files. Its
+//! manifest is that of `hairspring bake`, which resumes it.
 
 mod support;
 
 use egui_kittest::kittest::Queryable;
 use glam::Vec3;
-use hairspring_io::{ReadOptions, read_groom, read_scene_text};
+use hairspring_io::{Inputs, Manifest, Origin, ReadOptions, read_groom, read_scene_text};
 use hairspring_scene::stage::{FrameRate, Stage};
 use hairspring_test::farthest;
+use hairspring_view::sequence_path;
 use std::path::Path;
 use support::{SMALL, until, window};
 
 fn points(path: &Path) -> Vec<Vec3> {
     read_groom(path, &ReadOptions { scale: Some(1.0), up: None }).unwrap().value.points
+}
+
+/// The frames of `frames` that a bake of this scene would still make, according to the manifest of `pattern`.
+fn unfinished(pattern: &Path, frames: &[u32], (scene, text): (&Path, &str), fps: &str) -> Vec<u32> {
+    let (_, inputs) = Inputs::record_text(scene, text, || read_scene_text(scene, text).unwrap());
+    let origin = Origin::new("bake", &[("fps", Some(fps.into()))], inputs);
+    let (manifest, note) = Manifest::begin(pattern, origin, true).unwrap();
+    assert_eq!(note, None);
+    manifest.unfinished(frames, |frame| sequence_path(pattern, frame).unwrap()).0
 }
 
 #[test]
@@ -39,6 +50,9 @@ fn a_bake_is_what_the_library_plays_with_the_changes_of_the_window() {
         assert!(baked == all(&played), "frame {frame} differs by {} m", farthest(&baked, &all(&played)));
     }
     assert!(!file("hair.05.hair").exists());
+    let scene = file("scene.toml");
+    let left = unfinished(&file("hair.##.hair"), &[1, 2, 3, 4, 5], (&scene, &text), "24");
+    assert_eq!(left, [5]);
     let mut now = stage();
     (0..7).for_each(|_| _ = now.step_frame(FrameRate::new(60, 1).unwrap()));
     assert!(farthest(&points(&file("now.data")), &all(&now)) < 1e-6);
@@ -56,7 +70,11 @@ fn a_stopped_bake_leaves_complete_files() {
     assert!(until(&mut window, |app| app.is_idle()));
     let (message, wrong) = window.state().message().unwrap();
     assert!(message.contains("stopped after") && !wrong, "{message}");
-    let files: Vec<_> = std::fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().path()).collect();
+    let files = std::fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().path());
+    let files: Vec<_> = files.filter(|path| path.extension().unwrap() == "hair").collect();
+    let (scene, text) = (folder.path().join("scene.toml"), window.state().session().document().text());
+    let frames: Vec<u32> = (1..=files.len() as u32 + 1).collect();
+    assert_eq!(unfinished(&pattern, &frames, (&scene, text), "60"), [files.len() as u32 + 1]);
     assert!(files.len() >= 3 && files.len() < 100_000);
     let first = points(&folder.path().join("hair.0001.hair")).len();
     assert!(files.iter().all(|file| points(file).len() == first), "a file is not complete");

@@ -123,7 +123,7 @@ Exit code 0 means that the comparison was made, whether the sides differ or not.
 Examples:
   hairspring compare before.toml after.toml -o compare.mp4
   hairspring compare shot.toml --set-a solver.substeps=4 --set-b solver.substeps=8
-  hairspring compare shot.toml --set-b groom[0].material=curly --no-picture --json
+  hairspring compare shot.toml --set-b 'groom[0].material=curly' --no-picture --json
   hairspring compare --methods --report compare.html
   hairspring compare shot.toml --methods --guides 200 --integrators verlet,backward-euler,bdf2",
         scenes::FIGURES,

@@ -1,6 +1,6 @@
 //! Why the program ends without having finished: one sentence and an exit code.
 
-use hairspring_io::{Error as FileError, FrameError};
+use hairspring_io::{Error as FileError, FrameError, ManifestError};
 use hairspring_scene::stage::StageError;
 use hairspring_view::{OutputError, gpu::GpuError};
 use std::{fmt, path::Path};
@@ -81,6 +81,18 @@ impl From<FrameError> for Fault {
         match error {
             FrameError::NotFinite { .. } => Self::Scene(error.to_string()),
             FrameError::File(error) => Self::writing(error),
+        }
+    }
+}
+
+impl From<ManifestError> for Fault {
+    fn from(error: ManifestError) -> Self {
+        let sentence = error.to_string();
+        match error {
+            ManifestError::Differs(_) => Self::Usage(sentence),
+            ManifestError::Unreadable(_) => Self::Unreadable(sentence),
+            ManifestError::Invalid(_) => Self::Content(sentence),
+            ManifestError::Unwritable(_) => Self::Unwritable(sentence),
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use crate::{
     fault::Fault,
-    manifest::Manifest,
     output,
     picture::{Drawn, Format},
 };
+use hairspring_io::Manifest;
 use hairspring_view::{ClipWriter, Image, Layers, write_exr, write_jpeg, write_png};
 use std::{
     path::{Path, PathBuf},
@@ -179,7 +179,7 @@ impl Sink {
     /// Writes the manifest of pictures.
     fn list(&mut self) -> Result<(), Fault> {
         match self {
-            Self::Pictures(_, manifest) => manifest.write(),
+            Self::Pictures(_, manifest) => Ok(manifest.write()?),
             Self::Clip(_) | Self::Still(..) => Ok(()),
         }
     }

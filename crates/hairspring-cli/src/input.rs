@@ -1,10 +1,10 @@
 //! The input of a simulation: a scene file, or a groom file on its own.
 
-use crate::{console::Console, fault::Fault, frames, manifest::Inputs};
+use crate::{console::Console, fault::Fault, frames};
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 use hairspring::groom::Repairs;
-use hairspring_io::{Axis, Format, ReadOptions, read_body, read_groom, read_scene};
+use hairspring_io::{Axis, Format, Inputs, ReadOptions, read_body, read_groom, read_scene};
 use hairspring_scene::{Guides, Scene, SceneGroom};
 use std::path::{Path, PathBuf};
 
@@ -81,7 +81,7 @@ pub struct Input {
 }
 
 impl Input {
-    /// Options that change the result, for a manifest: see [`crate::manifest::Origin`].
+    /// Options that change the result, for a manifest: see [`hairspring_io::Origin`].
     pub fn options(&self) -> [(&'static str, Option<String>); 4] {
         let guides = |guides| match guides {
             Guides::All => "all".into(),

@@ -14,7 +14,6 @@ mod info;
 mod input;
 mod interrupt;
 mod live;
-mod manifest;
 mod moment;
 pub mod out_of_memory;
 mod output;

@@ -6,14 +6,13 @@ use crate::{
     film::{Film, Sink},
     frames::{self, FrameRange},
     input::Input,
-    interrupt,
-    manifest::{Manifest, Origin},
-    output,
+    interrupt, output,
     picture::{Setup, Studio, View},
     play::{Ending, play},
     totals::{self, Totals},
 };
 use clap::Parser;
+use hairspring_io::{Manifest, Origin};
 use hairspring_scene::{
     Scene,
     stage::{FrameRate, Stage},
@@ -104,11 +103,15 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         Kind::Clip => Sink::Clip(clip(&options.output, options.view.size, options.fps.hertz())?),
         Kind::Pictures => {
             let origin = Origin::new("render", &all_options(options, range), files);
-            let mut manifest = Manifest::begin(&options.output, origin, options.resume, console)?;
+            let file = |number| output::frame_path(&options.output, number);
+            let (mut manifest, note) = Manifest::begin(&options.output, origin, options.resume)?;
+            console.note_all(note);
             if options.resume {
-                wanted = manifest.unfinished(&wanted, &options.output, console);
+                let (unfinished, notes) = manifest.unfinished(&wanted, file);
+                console.note_all(notes);
+                wanted = unfinished;
             }
-            manifest.will_replace(&wanted, &options.output);
+            manifest.will_replace(wanted.iter().copied().map(file));
             Sink::Pictures(options.output.clone(), Box::new(manifest))
         }
         Kind::Still => Sink::Still(options.output.clone(), range.first),

@@ -139,8 +139,15 @@ const PERSON: std::ops::RangeInclusive<f32> = 1.35..=1.95;
 /// Height that is assumed if no known unit gives the height of a person [m].
 const TYPICAL: f32 = 1.6;
 
-/// Reads a `.bvh` file and converts it to meters and Y up. The unit and the up axis are guessed from the
-/// person's height in the frames; the notes say what was guessed. `rate` replaces the file's frame rate [Hz].
+/// Fewest joints of a person's skeleton: hips, spine, neck, head, and two of each leg. Less is a part of one, such as a
+/// head.
+const PERSON_JOINTS: usize = 8;
+/// Height of a part of a person, such as a neck with a head or a bust [m].
+const PART: std::ops::RangeInclusive<f32> = 0.05..=1.95;
+
+/// Reads a `.bvh` file and converts it to meters and Y up. The unit and the up axis are guessed from the height of the
+/// person, or the part of one, in the frames; the notes say what was guessed. `rate` replaces the file's frame rate
+/// [Hz].
 pub(crate) fn read_in_meters(
     data: &[u8],
     options: &ReadOptions,
@@ -154,14 +161,18 @@ pub(crate) fn read_in_meters(
     }
     let height = if up == Axis::Z { size.z } else { size.y };
     let scale = options.scale.unwrap_or_else(|| {
-        let unit = UNITS.iter().find(|(meters, _)| PERSON.contains(&(height * meters)));
+        let whole = motion.joints.len() >= PERSON_JOINTS;
+        let (plausible, what) = if whole { (PERSON, "person is then") } else { (PART, "skeleton is then") };
+        let unit = UNITS.iter().find(|(meters, _)| plausible.contains(&(height * meters)));
         let (scale, name) = match unit {
             Some((meters, name)) => (*meters, (*name).to_owned()),
-            None if height > 0.0 => (TYPICAL / height, format!("units of {:.5} m", TYPICAL / height)),
+            None if whole && height > 0.0 => {
+                (TYPICAL / height, format!("units of {:.5} m", TYPICAL / height))
+            }
             None => (1.0, "meters".into()),
         };
         notes.push(format!(
-            "a .bvh file has no unit; guessed {name} (the person is then {:.2} m tall); set `scale` to change it",
+            "a .bvh file has no unit; guessed {name} (the {what} {:.2} m tall); set `scale` to change it",
             height * scale
         ));
         scale

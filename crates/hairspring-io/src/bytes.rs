@@ -87,10 +87,7 @@ pub(crate) fn with_room<T>(count: usize) -> Result<Vec<T>, Problem> {
     let mut values = Vec::new();
     values.try_reserve_exact(count).map_err(|_| {
         let size = count.saturating_mul(size_of::<T>());
-        Problem::limit(
-            Place::Whole,
-            format!("there is no memory for {size} bytes that the file needs; reduce it"),
-        )
+        Problem::limit(Place::Whole, format!("out of memory: the file needs {size} bytes; reduce it"))
     })?;
     Ok(values)
 }

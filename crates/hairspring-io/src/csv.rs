@@ -84,7 +84,8 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
                 let value = cell(*k)?;
                 let coordinate = ["u", "v"].contains(&NUMBERS[*attribute]);
                 if !(value.is_finite() && (coordinate || value >= 0.0)) {
-                    let text = format!("`{}` is {}; it must be 0 or more", NUMBERS[*attribute], cells[*k]);
+                    let expected = if coordinate { "finite" } else { "0 or more" };
+                    let text = format!("`{}` is {}; it must be {expected}", NUMBERS[*attribute], cells[*k]);
                     return Err(wrong(text));
                 }
                 attributes.numbers[*attribute].push(value);
@@ -141,7 +142,7 @@ fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Col
     };
     let ignored: Vec<&str> = (0..names.len()).filter(|k| !used(*k)).map(|k| names[k].as_str()).collect();
     if !ignored.is_empty() {
-        notes.push(format!("the columns {} are not used", ignored.join(", ")));
+        notes.push(format!("ignored columns: {}", ignored.join(", ")));
     }
     Ok(columns)
 }
@@ -158,7 +159,7 @@ mod tests {
         assert_eq!(read.groom.offsets, [0, 2, 3]);
         assert_eq!(read.groom.points[0], Vec3::new(3.0, 2.0, 1.0));
         assert_eq!(read.radii.unwrap(), [0.00005, 0.0001, 0.00005]);
-        assert_eq!(read.notes, ["the columns age are not used"]);
+        assert_eq!(read.notes, ["ignored columns: age"]);
     }
 
     #[test]

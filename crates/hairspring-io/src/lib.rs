@@ -1,4 +1,4 @@
-//! Readers and writers of hairstyles, bodies, motion and scenes for Hairspring.
+//! Readers and writers of grooms, bodies, motion and scenes for Hairspring.
 //!
 //! The extension of a file selects its format. All content is returned in meters, right-handed, Y up. If a
 //! file does not specify its units, they are guessed, and the guess is in the notes of [`Loaded`].
@@ -12,6 +12,7 @@ mod error;
 mod external;
 mod frame_writer;
 mod load;
+mod manifest;
 mod motion;
 mod observe;
 mod polygon;
@@ -47,6 +48,7 @@ pub use external::{
 pub use frame_writer::{FrameError, FrameWriter};
 pub use gltf::Character;
 pub use load::{Format, Loaded, holds_only_curves, read_body, read_bones, read_groom, read_motion};
+pub use manifest::{Inputs, Manifest, ManifestError, Origin};
 pub use motion::Motion;
 pub use observe::observe_files;
 pub use save::{atomically, write_groom, write_strands};

@@ -130,7 +130,7 @@ pub fn holds_only_curves(path: &Path) -> bool {
     bytes_of(path).is_ok_and(|data| held(&data))
 }
 
-/// Reads a hairstyle from a `.hair`, `.tfx`, `.data` or `.csv` file, or from the curves of an `.obj`, `.ply`, `.gltf`
+/// Reads a groom from a `.hair`, `.tfx`, `.data` or `.csv` file, or from the curves of an `.obj`, `.ply`, `.gltf`
 /// or `.glb` file, and repairs it (`groom::sanitize`).
 ///
 /// # Errors
@@ -146,7 +146,7 @@ pub(crate) fn read_groom_on(
     fit: Option<FitUnit<'_>>,
 ) -> Result<Loaded<Groom>> {
     let known = [&Format::GROOMS[..], &Format::CURVES, &Format::EXTERNAL].concat();
-    let format = format_of(path, &known, "a hairstyle")?;
+    let format = format_of(path, &known, "a groom")?;
     check_scale(path, options)?;
     let external = Format::EXTERNAL.contains(&format);
     let read: Read = if external {
@@ -335,7 +335,7 @@ fn format_of(path: &Path, known: &[Format], what: &str) -> Result<Format> {
 fn check_scale(path: &Path, options: &ReadOptions) -> Result<()> {
     match options.scale {
         Some(s) if !(s.is_finite() && s > 0.0) => {
-            let reason = format!("a scale of {s} meters per unit is not above 0");
+            let reason = format!("the scale must be above 0, but is {s}");
             Err(Error::Unsupported { path: path.to_owned(), reason })
         }
         _ => Ok(()),

@@ -80,8 +80,7 @@ pub fn parse(mesh: Mesh, rig: &[u8], weights: &[u8]) -> Result<Character, Proble
 }
 
 fn json<'a, T: Deserialize<'a>>(data: &'a [u8], what: &str) -> Result<T, Problem> {
-    serde_json::from_slice(data)
-        .map_err(|e| Problem::line(e.line(), format!("the {what} file is not as expected: {e}")))
+    serde_json::from_slice(data).map_err(|e| Problem::line(e.line(), format!("invalid {what} file: {e}")))
 }
 
 /// Center of each named group's vertices.

@@ -157,7 +157,7 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     }
     if groom.points.is_empty() {
         return Err(Problem::whole(
-            "the file has no polylines (`l`), which are the strands of a hairstyle; export the curves, not a mesh",
+            "the file has no polylines (`l`), which are the strands of a groom; export the curves, not a mesh",
         ));
     }
     if !has_uvs {
@@ -165,7 +165,7 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     }
     let mut notes = Vec::new();
     if faces > 0 {
-        notes.push(format!("{faces} faces are left out, because a hairstyle is read from polylines"));
+        notes.push(format!("{faces} faces are left out, because a groom is read from polylines"));
     }
     Ok(Read { groom, radii: None, true_radii: false, units: FileUnits::default(), notes })
 }
@@ -188,7 +188,7 @@ impl LeftOut {
         if self.surfaces > 0 {
             "the file has free-form surfaces but no faces, so it is no mesh; export it as polygons"
         } else if self.lines > 0 {
-            "the file has polylines but no faces, so it is no mesh; name it as a hairstyle, or export faces"
+            "the file has polylines but no faces, so it is no mesh; name it as a groom, or export faces"
         } else {
             "the file has no faces, so it is no mesh; export it as .obj with faces"
         }
@@ -201,10 +201,7 @@ impl LeftOut {
                 self.concave,
                 "polygons of many corners are not convex, and may overlap; triangulate them before the export",
             ),
-            (
-                self.lines,
-                "polylines are no surface and are left out; name the file as a hairstyle to read them",
-            ),
+            (self.lines, "polylines are no surface and are left out; name the file as a groom to read them"),
             (self.surfaces, "free-form curves and surfaces are left out; export them as polygons"),
         ];
         let some = counts.into_iter().filter(|(count, _)| *count > 0);

@@ -44,7 +44,7 @@ pub fn write_strands(path: &Path, strands: Strands<'_>) -> Result<Format> {
     let format =
         Format::of(path).filter(|f| Format::GROOMS.contains(f)).ok_or_else(|| Error::Unsupported {
             path: path.to_owned(),
-            reason: "unknown extension; a hairstyle is written as .hair, .tfx or .data".into(),
+            reason: "unknown extension; a groom is written as .hair, .tfx or .data".into(),
         })?;
     strands.check().map_err(unwritable)?;
     let misfit = match format {

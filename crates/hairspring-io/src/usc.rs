@@ -37,7 +37,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         let at = bytes.at();
         let count: i32 = bytes.value("a strand's point count")?;
         let count = usize::try_from(count).map_err(|_| {
-            Problem::new(Place::Byte(at), format!("strand {s} names {count} points: a count below zero"))
+            Problem::new(Place::Byte(at), format!("strand {s} has a negative point count ({count})"))
         })?;
         let run = bytes.take(count.saturating_mul(size_of::<Vec3>()), "a strand's points")?;
         groom.points.extend(run.chunks_exact(size_of::<Vec3>()).map(bytemuck::pod_read_unaligned::<Vec3>));

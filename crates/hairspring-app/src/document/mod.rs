@@ -14,7 +14,7 @@ pub use history::Way;
 pub use open::{KINDS, new_scene, replaces_scene};
 
 use crate::{defaults::Reference, effective::effective, error::AppError, key::Key};
-use hairspring_io::{Loaded, read_scene_text, read_settings, same_geometry};
+use hairspring_io::{Inputs, Loaded, read_scene_text, read_settings, same_geometry};
 use hairspring_scene::Scene;
 use history::{Draft, History};
 use std::path::{Path, PathBuf};
@@ -74,6 +74,12 @@ impl Source {
     /// Reads the scene with all its files.
     pub fn load(&self) -> Result<Loaded<Scene>, AppError> {
         Ok(read_scene_text(&self.path, &self.text)?)
+    }
+
+    /// The same, and the checksums of the text and of all files that were read.
+    pub fn load_and_record(&self) -> Result<(Loaded<Scene>, Inputs), AppError> {
+        let (loaded, inputs) = Inputs::record_text(&self.path, &self.text, || self.load());
+        Ok((loaded?, inputs))
     }
 }
 

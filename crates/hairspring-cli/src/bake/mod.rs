@@ -10,9 +10,7 @@ use crate::{
     fault::Fault,
     frames::{self, FrameRange},
     input::Input,
-    interrupt,
-    manifest::{Manifest, Origin},
-    output,
+    interrupt, output,
     play::{Ending, play_from},
     totals::{self, Totals},
 };
@@ -20,7 +18,7 @@ use cache::Cache;
 use checkpoints::Checkpoints;
 use clap::Parser;
 use hairspring::material::Material;
-use hairspring_io::{Format, FrameWriter};
+use hairspring_io::{Format, FrameWriter, Manifest, Origin};
 use hairspring_scene::{
     Scene,
     stage::{FrameRate, Stage},
@@ -179,14 +177,14 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let mut wanted = all.clone();
     let mut manifest = None;
     if output::is_sequence(&pattern) {
-        let begun = Manifest::begin(
-            &pattern,
-            Origin::new("bake", &options.listed(), files),
-            options.resume,
-            console,
-        )?;
+        let origin = Origin::new("bake", &options.listed(), files);
+        let (begun, note) = Manifest::begin(&pattern, origin, options.resume)?;
+        console.note_all(note);
         if options.resume {
-            wanted = begun.unfinished(&wanted, &pattern, console);
+            let (unfinished, notes) =
+                begun.unfinished(&wanted, |sample| output::frame_path(&pattern, sample));
+            console.note_all(notes);
+            wanted = unfinished;
         }
         manifest = Some(begun);
     }
@@ -208,7 +206,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     interrupt::finish_current("the current frame");
     if let Some(manifest) = &mut manifest {
-        manifest.will_replace(&wanted, &pattern);
+        manifest.will_replace(wanted.iter().map(|sample| output::frame_path(&pattern, *sample)));
         manifest.write()?;
     }
     let checkpoints = match (options.checkpoint, &manifest) {

@@ -8,7 +8,6 @@ use crate::{
     fault::Fault,
     frames::{self, FrameRange},
     input::{self, tell},
-    manifest::Inputs,
     output,
     picture::{Setup, Studio, View},
     render::clip,
@@ -17,7 +16,7 @@ use crate::{
 use figures::{Distances, Figures};
 use hairspring::groom::Repairs;
 use hairspring_app::{Difference, SideBySide, captions_of, scene_differences, set_in_text};
-use hairspring_io::{Format, read_scene_text, read_settings, scene_text};
+use hairspring_io::{Format, Inputs, read_scene_text, read_settings, scene_text};
 use hairspring_scene::{
     Scene,
     stage::{FrameRate, Stage},

@@ -239,7 +239,7 @@ impl Build<'_> {
                 others => format!("has {others} primitives of triangles or points but no lines"),
             };
             return Err(Problem::whole(format!(
-                "the file {has}: a hairstyle is read from primitives of the mode LINES or LINE_STRIP; export the hair as curves or loose edges, or name the file as a body"
+                "the file {has}: a groom is read from primitives of the mode LINES or LINE_STRIP; export the hair as curves or loose edges, or name the file as a body"
             )));
         }
         let mut note = |count: usize, text: &str| {
@@ -249,7 +249,7 @@ impl Build<'_> {
         };
         note(
             found.others,
-            "primitives of triangles or points are left out, because a hairstyle is read from lines",
+            "primitives of triangles or points are left out, because a groom is read from lines",
         );
         note(found.loops, "closed lines (LINE_LOOP) are opened at their first point, which is the root");
         note(

@@ -274,7 +274,8 @@ pub(super) fn walk(
 ) -> Result<(Vec<usize>, Vec<Option<usize>>, Vec<bool>), Problem> {
     let count = document.nodes.len();
     let mut parents: Vec<Option<usize>> = vec![None; count];
-    let missing = |n: usize| Problem::whole(format!("node {n} is named, but the file has {count} nodes"));
+    let missing =
+        |n: usize| Problem::whole(format!("the file refers to node {n}, but has only {count} nodes"));
     for (n, node) in document.nodes.iter().enumerate() {
         for c in &node.children {
             *parents.get_mut(*c).ok_or_else(|| missing(*c))? = Some(n);
@@ -325,7 +326,7 @@ fn needed(document: &Document, parents: &[Option<usize>], reached: &[bool]) -> R
         .map(|(n, ..)| n);
     for first in skins.chain(animated).chain(rigid) {
         let is_reached = reached.get(first).ok_or_else(|| {
-            Problem::whole(format!("node {first} is named, but the file has {} nodes", parents.len()))
+            Problem::whole(format!("the file refers to node {first}, but has only {} nodes", parents.len()))
         })?;
         let mut at = Some(first).filter(|_| *is_reached);
         while let Some(n) = at.filter(|n| !needed[*n]) {

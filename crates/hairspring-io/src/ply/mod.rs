@@ -219,7 +219,7 @@ fn strands_of(header: &Header, vertices: &[Vertex], indices: Indices, source: So
     }
     match faces(header) {
         0 => {}
-        faces => notes.push(format!("{faces} faces are left out, because a hairstyle is read from curves")),
+        faces => notes.push(format!("{faces} faces are left out, because a groom is read from curves")),
     }
     if indices.unused > 0 {
         notes.push(format!(

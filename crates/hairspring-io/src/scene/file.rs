@@ -51,7 +51,7 @@ define_settings! {
         /// Objects with a motion of their own: in the world, or carried by a joint of the body.
         #[serde(default)]
         prop: Vec<PropFile>, "none", {table};
-        /// The hairstyles. At least one is required, unless `builtin` is given.
+        /// The grooms. At least one is required, unless `builtin` is given.
         #[serde(default)]
         groom: Vec<GroomFile>, "none", {table};
         /// Materials by name: `preset`, then any fields of a material that override it.

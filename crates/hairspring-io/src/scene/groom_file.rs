@@ -34,7 +34,7 @@ define_settings! {
         /// Source of the color of a file that has a color per point: the file, or `look`.
         #[serde(default)]
         colors: ColorSource = "file", "none", {words &["file", "look"]};
-        /// Placement of the hairstyle, applied after `scale` and `up`.
+        /// Placement of the groom, applied after `scale` and `up`.
         #[serde(default)]
         transform: Placement, "none", {table};
         /// Name of a `[material.NAME]` or a preset, or a list of them, one per group.
@@ -158,11 +158,11 @@ define_settings! {
     #[derive(Clone, Copy, PartialEq)]
     #[serde(default)]
     file struct Placement {
-        /// Position of the hairstyle, applied after scale and rotation.
+        /// Position of the groom, applied after scale and rotation.
         position: Vec3 = Vec3::ZERO, ["m"], {vector};
-        /// Rotation of the hairstyle about X, then Y, then Z.
+        /// Rotation of the groom about X, then Y, then Z.
         rotation: Vec3 = Vec3::ZERO, ["degrees"], {vector};
-        /// Scale of the hairstyle: one factor, or one for each of x, y and z. Negative values mirror.
+        /// Scale of the groom: one factor, or one for each of x, y and z. Negative values mirror.
         #[serde(deserialize_with = "factors")]
         scale: Vec3 = 1.0, "factor", {text "finite and not 0"};
     }

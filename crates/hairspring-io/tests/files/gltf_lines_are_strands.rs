@@ -151,12 +151,12 @@ fn a_file_without_strands_says_what_is_expected() {
     let text = gltf::parse_groom(&glb(), &|_| None).unwrap_err().to_string();
     assert!(
         text.starts_with(
-            "the file has 2 primitives of triangles or points but no lines: a hairstyle is read from"
+            "the file has 2 primitives of triangles or points but no lines: a groom is read from"
         ),
         "{text}"
     );
     assert!(
-        error(&GltfFile::default()).starts_with("the file has no lines: a hairstyle is read from primitives")
+        error(&GltfFile::default()).starts_with("the file has no lines: a groom is read from primitives")
     );
     let segments = |pairs: &'static [u8]| {
         lines(4, |file, positions| {

@@ -166,6 +166,20 @@ fn read(text: &str) -> Result<(Clip, String), String> {
 }
 
 #[test]
+fn a_head_alone_is_not_taken_for_a_person() {
+    for (height, unit) in
+        [("0.2", "meters (the skeleton is then 0.20 m"), ("20", "centimeters (the skeleton is then 0.20 m")]
+    {
+        let text = format!(
+            "HIERARCHY\nROOT Head\n{{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{{\nOFFSET 0 \
+             {height} 0\n}}\n}}\nMOTION\nFrames: 1\nFrame Time: 0.02\n0 0 0\n"
+        );
+        let (_, notes) = read(&text).unwrap();
+        assert!(notes.contains(unit), "{height}: {notes}");
+    }
+}
+
+#[test]
 fn frames_that_the_header_does_not_count_are_reported() {
     let (clip, notes) = read(&bvh("Frames: 3\nFrame Time: 0.02\n", 3)).unwrap();
     assert_eq!((clip.frame_count(), clip.rate), (3, 50.0));

@@ -1,7 +1,7 @@
 //! Promise: files from third parties are read completely and in the right place.
 //!
 //! Authors describe their formats, but real files decide what a reader must accept. These tests read real
-//! hairstyles, characters and motions. They compare counts, sizes and lengths with values that were
+//! grooms, characters and motions. They compare counts, sizes and lengths with values that were
 //! measured in the files by other means (the table in the data's README). A test is skipped, with a reason
 //! printed, where its data is missing.
 

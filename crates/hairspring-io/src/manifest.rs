@@ -1,9 +1,9 @@
 //! The manifest of a sequence of files: what it was made from, and the checksum of each finished file.
 //!
-//! It is a JSON file beside the sequence. `--resume` compares it with the current run, and checks each
+//! It is a JSON file beside the sequence. A run that resumes another compares its own origin with it, and checks each
 //! finished file against it.
 
-use crate::{console::Console, fault::Fault, output};
+use crate::observe_files;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::{
@@ -26,9 +26,26 @@ const SHARE: u32 = 20;
 /// Number of items that a message lists.
 const LISTED: usize = 3;
 
+/// Why a manifest cannot be used. Each variant has the whole sentence.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum ManifestError {
+    /// The run to be resumed had another origin.
+    #[error("{0}")]
+    Differs(String),
+    /// The manifest cannot be read.
+    #[error("{0}")]
+    Unreadable(String),
+    /// The file is not a manifest.
+    #[error("{0}")]
+    Invalid(String),
+    /// The manifest cannot be written, or a finished file cannot be read back.
+    #[error("{0}")]
+    Unwritable(String),
+}
+
 /// Length and checksum of a file.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Checksum {
+struct Checksum {
     /// Length [bytes].
     bytes: u64,
     /// SHA-256 in hexadecimal, as `sha256sum` prints it.
@@ -75,7 +92,9 @@ pub struct Origin {
 }
 
 impl Origin {
-    /// `options` lists all options; those without a value have their default.
+    /// Describes a run of `command`, `bake` or `render`, by this version of the program. `options` lists all options;
+    /// those without a value have their default.
+    #[must_use]
     pub fn new(command: &str, options: &[(&str, Option<String>)], inputs: Inputs) -> Self {
         let instruction_set = hairspring::simulation::Simulation::instruction_sets().into_iter().next();
         Self {
@@ -128,6 +147,7 @@ pub struct Inputs(BTreeMap<String, Checksum>);
 
 impl Inputs {
     /// Names of files that both have read with different content.
+    #[must_use]
     pub fn changed(&self, other: &Self) -> Vec<String> {
         let differs =
             |(name, checksum): &(&String, &Checksum)| other.0.get(*name).is_some_and(|c| c != *checksum);
@@ -143,8 +163,16 @@ impl Inputs {
             let name = path.strip_prefix(&folder).unwrap_or(path).display().to_string();
             sink.borrow_mut().0.entry(name).or_insert_with(|| Checksum::of_bytes(content));
         };
-        let result = hairspring_io::observe_files(observe, read);
+        let result = observe_files(observe, read);
         (result, inputs.take())
+    }
+
+    /// The same for the scene `main` whose text is `text`, which may not be saved.
+    pub fn record_text<T>(main: &Path, text: &str, read: impl FnOnce() -> T) -> (T, Self) {
+        let (result, mut inputs) = Self::record(main, read);
+        let name = main.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        inputs.0.insert(name, Checksum::of_bytes(text.as_bytes()));
+        (result, inputs)
     }
 }
 
@@ -168,6 +196,7 @@ pub struct Manifest {
 
 impl Manifest {
     /// Path of the manifest of the numbered files `pattern`: `hair.####.hair` → `hair.bake.hair.json`.
+    #[must_use]
     pub fn path(pattern: &Path, command: &str) -> PathBuf {
         let name = pattern.file_name().unwrap_or_default().to_string_lossy();
         let end = name.rfind('#').map_or(0, |at| at + 1);
@@ -175,14 +204,20 @@ impl Manifest {
         pattern.with_file_name(format!("{}{command}{}.json", &name[..start], &name[end..]))
     }
 
-    /// Starts a run. Files of an earlier run with the same origin stay listed.
+    /// Starts a run. Files of an earlier run with the same origin stay listed. Also returns a note if there is
+    /// something that a user should know.
     ///
     /// # Errors
     /// With `resume`, returns an error that says what differs if the origin of the earlier run differs, or
     /// if its manifest cannot be read.
-    pub fn begin(pattern: &Path, origin: Origin, resume: bool, console: Console) -> Result<Self, Fault> {
+    pub fn begin(
+        pattern: &Path,
+        origin: Origin,
+        resume: bool,
+    ) -> Result<(Self, Option<String>), ManifestError> {
         let path = Self::path(pattern, &origin.command);
         let mut content = Content { origin, files: BTreeMap::new() };
+        let mut note = None;
         match read(&path) {
             Ok(Some(before)) => {
                 let mut differences = before.origin.differences(&content.origin);
@@ -194,21 +229,22 @@ impl Manifest {
                     let more = if more > 0 { format!(", and {more} more") } else { String::new() };
                     let (path, what) = (path.display(), differences.join(", "));
                     if resume {
-                        return Err(Fault::Usage(format!(
+                        return Err(ManifestError::Differs(format!(
                             "--resume needs the inputs and options of {path}, but {what}{more}; run it without \
                              --resume to start again"
                         )));
                     }
-                    console.note(format_args!("{path} is of another run and is replaced: {what}{more}"));
+                    note = Some(format!("{path} belongs to a different run and is replaced: {what}{more}"));
                 }
             }
-            Ok(None) if resume => console
-                .note(format_args!("{} does not exist, so no frame counts as finished", path.display())),
+            Ok(None) if resume => {
+                note = Some(format!("{} does not exist, so no frame counts as finished", path.display()));
+            }
             Err(why) if resume => return Err(why),
             // A new run replaces it.
             Ok(None) | Err(_) => {}
         }
-        Ok(Self { path, content, replaced: BTreeSet::new(), written: None })
+        Ok((Self { path, content, replaced: BTreeSet::new(), written: None }, note))
     }
 
     /// Describes everything that the files depend on, as JSON.
@@ -216,12 +252,13 @@ impl Manifest {
         serde_json::to_string(&self.content.origin).unwrap_or_default()
     }
 
-    /// Returns those of `frames` that are not finished, and prints which files are made again although they
-    /// exist.
-    pub fn unfinished(&self, frames: &[u32], pattern: &Path, console: Console) -> Vec<u32> {
+    /// Returns those of `frames` that are not finished, and notes on files that are made again although they exist.
+    /// `file` returns the path of a frame.
+    #[must_use]
+    pub fn unfinished(&self, frames: &[u32], file: impl Fn(u32) -> PathBuf) -> (Vec<u32>, Vec<String>) {
         let mut again = Vec::new();
         let wanted = frames.iter().copied().filter(|&number| {
-            let path = output::frame_path(pattern, number);
+            let path = file(number);
             let why = match self.why_unfinished(&path) {
                 Ok(None) => return false,
                 Ok(Some(why)) => why,
@@ -233,14 +270,14 @@ impl Manifest {
         });
         let wanted = wanted.collect();
         let more = again.len().saturating_sub(LISTED);
-        console.note_all(again.iter().take(LISTED));
+        again.truncate(LISTED);
         if more > 0 {
-            console.note(format_args!("{more} more files are made again"));
+            again.push(format!("{more} more files are made again"));
         }
-        wanted
+        (wanted, again)
     }
 
-    /// Says why the file `path` does not count as finished; `None` if it does.
+    /// Returns why the file `path` does not count as finished; `None` if it does.
     fn why_unfinished(&self, path: &Path) -> io::Result<Option<String>> {
         let there = std::fs::metadata(path)?;
         // Reading a pipe or a device might never end.
@@ -257,24 +294,31 @@ impl Manifest {
         Ok((!same).then(|| "its content has changed".into()))
     }
 
-    /// Lists the file `path`, which is complete.
-    pub fn finished(&mut self, path: &Path) -> Result<(), Fault> {
-        let checksum = Checksum::of_file(path)
-            .map_err(|why| Fault::Unwritable(format!("{} could not be read back: {why}", path.display())))?;
+    /// Lists the file `path`, which is complete. Writes the manifest if the last time was long enough ago.
+    ///
+    /// # Errors
+    /// Returns an error if the file cannot be read back or the manifest cannot be written.
+    pub fn finished(&mut self, path: &Path) -> Result<(), ManifestError> {
+        let checksum = Checksum::of_file(path).map_err(|why| {
+            ManifestError::Unwritable(format!("{} could not be read back: {why}", path.display()))
+        })?;
         self.content.files.insert(name_of(path), checksum);
         let due = self.written.is_none_or(|(when, took)| when.elapsed() > EVERY.max(took * SHARE));
         if due { self.write() } else { Ok(()) }
     }
 
-    /// Removes the files of `frames` from the list, because they are about to be replaced. Takes effect when
-    /// the manifest is written, which must be before the first of them.
-    pub fn will_replace(&mut self, frames: &[u32], pattern: &Path) {
-        self.replaced = frames.iter().map(|n| name_of(&output::frame_path(pattern, *n))).collect();
+    /// Removes `files` from the list, because they are about to be replaced. Takes effect when the manifest is
+    /// written, which must be before the first of them.
+    pub fn will_replace(&mut self, files: impl IntoIterator<Item = PathBuf>) {
+        self.replaced = files.into_iter().map(|path| name_of(&path)).collect();
         self.content.files.retain(|name, _| !self.replaced.contains(name));
     }
 
     /// Writes the manifest. Files that another run of the same origin has finished meanwhile stay listed.
-    pub fn write(&mut self) -> Result<(), Fault> {
+    ///
+    /// # Errors
+    /// Returns an error if it cannot be written.
+    pub fn write(&mut self) -> Result<(), ManifestError> {
         let began = Instant::now();
         if let Ok(Some(there)) = read(&self.path)
             && there.origin == self.content.origin
@@ -285,9 +329,12 @@ impl Manifest {
                 }
             }
         }
-        let text = serde_json::to_string_pretty(&self.content)
-            .map_err(|why| Fault::Unwritable(format!("{}: {why}", self.path.display())))?;
-        output::write_whole(&self.path, (text + "\n").as_bytes())?;
+        let failed = |why: &dyn std::fmt::Display| {
+            ManifestError::Unwritable(format!("{} could not be written: {why}", self.path.display()))
+        };
+        let text = serde_json::to_string_pretty(&self.content).map_err(|why| failed(&why))? + "\n";
+        hairspring_file::write_atomically(&self.path, |out| out.write_all(text.as_bytes()))
+            .map_err(|why| failed(&why))?;
         self.written = Some((Instant::now(), began.elapsed()));
         Ok(())
     }
@@ -298,18 +345,20 @@ fn name_of(path: &Path) -> String {
 }
 
 /// Reads a manifest; `None` if there is none.
-fn read(path: &Path) -> Result<Option<Content>, Fault> {
+fn read(path: &Path) -> Result<Option<Content>, ManifestError> {
     // Reading a pipe or a device might never end.
     if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
-        return Err(Fault::Unreadable(format!("{} is not a regular file", path.display())));
+        return Err(ManifestError::Unreadable(format!("{} is not a regular file", path.display())));
     }
     let text = match std::fs::read_to_string(path) {
         Ok(text) => text,
         Err(why) if why.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(why) => return Err(Fault::Unreadable(format!("{} could not be read: {why}", path.display()))),
+        Err(why) => {
+            return Err(ManifestError::Unreadable(format!("{} could not be read: {why}", path.display())));
+        }
     };
     serde_json::from_str(&text).map(Some).map_err(|why| {
-        Fault::Content(format!(
+        ManifestError::Invalid(format!(
             "{} is not the manifest of an earlier run ({why}); run it without --resume to start again",
             path.display()
         ))
