@@ -124,7 +124,7 @@ impl Floor {
         if far.is_nan() || far >= FADE[1] {
             return wall;
         }
-        let key = |p: Vec3| shadow.on_skin(level, p) * (-HAIR_SHADE * shadow.key_around(p)).exp();
+        let key = |p: Vec3| shadow.on_ground(level, p) * (-HAIR_SHADE * shadow.key_around(p)).exp();
         // If a pixel covers more ground than the softness of the shadow, the shadow is sampled several times,
         // as for the outlines of bodies.
         let length = p.distance(view.eye) / view.focal * ray.length() / -ray.y;

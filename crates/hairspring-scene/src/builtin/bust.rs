@@ -126,8 +126,8 @@ fn color(mesh: &mut Mesh) {
     let looks = [
         ("skin", vec3(0.44, 0.262, 0.186), 0.58),
         ("lips", vec3(0.33, 0.115, 0.100), 0.42),
-        // Darkened by stubble between the roots.
-        ("scalp", vec3(0.29, 0.17, 0.125), 0.75),
+        // Darkened by stubble between the roots, which also hides its highlight.
+        ("scalp", vec3(0.29, 0.17, 0.125), 1.0),
         ("clothes", vec3(0.030, 0.033, 0.040), 0.85),
     ];
     for (i, (name, color, roughness)) in looks.into_iter().enumerate() {

@@ -27,6 +27,9 @@ pub(crate) const REFLECTANCE: f32 = 0.028;
 pub(crate) const LOBES: (f32, f32) = (0.75, 0.6);
 /// Strength of the sheen at grazing angles.
 pub(crate) const SHEEN: f32 = 0.25;
+/// Roughness above which a surface reflects less and less of the lamps like a mirror [1]. At 1 it is matte, as are wool
+/// and the skin between hairs: what is rough enough hides its own highlight.
+pub(crate) const MATTE: f32 = 0.85;
 
 /// Light leaving triangle `t` of `body` toward the camera, at the pixel position `at`.
 pub(crate) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
@@ -51,7 +54,7 @@ pub(crate) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
     // The hair shadow is sampled slightly off the surface, so that the voxels of the surface itself do not
     // count.
     let depth = shadow.around(p + n * (2.5 * shadow.voxel()));
-    let key_open = shadow.on_skin(level, p + n * 5e-4) * (-HAIR_SHADE * depth.x).exp();
+    let key_open = shadow.on_skin(level, p + n * 5e-4, n) * (-HAIR_SHADE * depth.x).exp();
     let open = [key_open, (-HAIR_SHADE * depth.y).exp(), (-HAIR_SHADE * depth.z).exp()];
     let nv = n.dot(eye).max(1e-3);
     let mut diffuse = Vec3::ZERO;
@@ -71,7 +74,8 @@ pub(crate) fn light(lit: &Lit, body: &MeshDraw, t: usize, at: Vec2) -> Vec3 {
     let sky = lamps.ground.lerp(lamps.sky, 0.5 + 0.5 * n.y) * open_sky + lamps.key.color * KEY_BOUNCE;
     // Sheen at grazing angles, from vellus hair and the oil on skin.
     let sheen = SHEEN * (1.0 - nv).powi(4) * depth.w;
-    let lit = base * (diffuse + sky) + gloss + lamps.sky * sheen;
+    let shiny = ((1.0 - roughness) / (1.0 - MATTE)).min(1.0);
+    let lit = base * (diffuse + sky) + (gloss + lamps.sky * sheen) * shiny;
     if lit.is_finite() { lit } else { Vec3::ZERO }
 }
 

@@ -12,6 +12,15 @@ use rayon::prelude::*;
 
 /// Radius of the filter that softens shadows on skin [texels].
 pub(crate) const RADIUS: usize = 4;
+/// Places of the taps along an axis around the middle of the filter, in units of their spacing: as many as twice
+/// [`RADIUS`].
+const PLACES: [f32; 8] = [-3.5, -2.5, -1.5, -0.5, 0.5, 1.5, 2.5, 3.5];
+/// Radius of the key lamp over its distance [1]: a soft box of 40 cm in 2 m.
+pub(crate) const LAMP: f32 = 0.1;
+/// Largest radius of the filter on bodies [m].
+pub(crate) const WIDEST: f32 = 0.012;
+/// Least cosine between normal and light that is used for the tangent plane [1].
+pub(crate) const STEEPEST: f32 = 0.2;
 /// Number of rows that one thread draws.
 const BAND: usize = SIDE;
 
@@ -153,6 +162,75 @@ impl DepthMap {
             lit += (-(over * SLOPE).max(0.0).min(1.0) + 1.0) * weight;
         }
         (lit * across).reduce_sum() * (1.0 / (RADIUS * RADIUS) as f32)
+    }
+
+    /// Fraction of the key lamp's light that reaches a point `p` of a body with the unit normal `n`, 0 to 1:
+    /// percentage-closer soft shadows (Fernando 2005). The edge of a shadow is as wide as a lamp of the size [`LAMP`]
+    /// makes it: the shadow of a chin on the chest is softer than that of a nose on the cheek.
+    ///
+    /// ```text
+    ///   lamp ═══         r = LAMP · d      d  mean height of what is above the surface in the neighborhood [m]
+    ///         \ /        r                 r  radius of the filter [m]
+    ///   ───────X  d
+    ///         / \
+    ///   ─────╱───╲─────  p
+    /// ```
+    pub fn area_light(&self, level: Level, p: Vec3, n: Vec3, bias: f32) -> f32 {
+        dispatch!(level, simd => self.area_light_in_lanes(simd, p, n, bias))
+    }
+
+    #[inline(always)]
+    fn area_light_in_lanes<S: Simd>(&self, simd: S, p: Vec3, n: Vec3, bias: f32) -> f32 {
+        if self.side == 0 {
+            return 1.0;
+        }
+        let middle = self.texel(p) + Vec3::new(0.0, 0.0, bias);
+        // The tangent plane of the surface rises toward the lamp by this, so that a surface does not shadow itself.
+        let slope =
+            Vec2::new(n.dot(self.right), n.dot(self.up)) / (-n.dot(self.toward).max(STEEPEST) * self.scale);
+        let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
+        let places = f32x8::simd_from(simd, PLACES);
+        let weights = -(places.abs() * (1.0 / RADIUS as f32)) + 1.0;
+        // Height above the surface of one row of taps, `spacing` texels apart.
+        let row = |y: f32, spacing: f32| {
+            let offset = Vec2::new(slope.x * spacing, slope.y * spacing);
+            let plane = places * offset.x + (middle.z + y * offset.y);
+            f32x8::simd_from(simd, self.taps(middle.truncate(), y, spacing)) - plane
+        };
+        let spacing = (WIDEST * self.scale / RADIUS as f32).max(1.0);
+        let (mut sum, mut count) = (zero, zero);
+        for y in PLACES {
+            let over = row(y, spacing);
+            let above = over.simd_gt(0.0);
+            sum += above.select(over, zero);
+            count += above.select(one, zero);
+        }
+        let count = count.reduce_sum();
+        if count <= 0.0 {
+            return 1.0;
+        }
+        let radius = (LAMP * sum.reduce_sum() / count).min(WIDEST);
+        let spacing = (radius * self.scale / RADIUS as f32).max(1.0);
+        let mut lit = zero;
+        for y in PLACES {
+            let over = row(y, spacing);
+            let weight = 1.0 - y.abs() * (1.0 / RADIUS as f32);
+            lit += (-(over * SLOPE).max(0.0).min(1.0) + 1.0) * weight;
+        }
+        (lit * weights).reduce_sum() * (1.0 / (RADIUS * RADIUS) as f32)
+    }
+
+    /// Heights at eight places of a row, `spacing` texels apart, around the texel coordinates `middle`; −∞ outside of
+    /// the map.
+    #[inline(always)]
+    fn taps(&self, middle: Vec2, y: f32, spacing: f32) -> [f32; 8] {
+        let y = middle.y + y * spacing;
+        PLACES.map(|x| {
+            let x = middle.x + x * spacing;
+            let side = self.side as f32;
+            let inside = x >= 0.0 && y >= 0.0 && x < side && y < side;
+            if inside { self.heights[y as usize * self.side + x as usize] } else { f32::NEG_INFINITY }
+        })
     }
 
     /// The square of 2 · [`RADIUS`] texels around `p`: its first texel, the position of `p` between the

@@ -241,9 +241,14 @@ impl Shadow {
         }
     }
 
-    /// Fraction of the key lamp's light that bodies let through to a point on their surface.
-    pub fn on_skin(&self, level: Level, p: Vec3) -> f32 {
+    /// Fraction of the key lamp's light that bodies let through to a point of the ground.
+    pub fn on_ground(&self, level: Level, p: Vec3) -> f32 {
         self.map.soft_light(level, p, SKIN_BIAS)
+    }
+
+    /// Fraction of the key lamp's light that bodies let through to a point on their surface with the unit normal `n`.
+    pub fn on_skin(&self, level: Level, p: Vec3, n: Vec3) -> f32 {
+        self.map.area_light(level, p, n, SKIN_BIAS)
     }
 
     /// Width of the edge of the sharpest shadow [m]; infinite if there is no shadow.

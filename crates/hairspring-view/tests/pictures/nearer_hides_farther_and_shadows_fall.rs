@@ -170,3 +170,38 @@ fn sky_shadow_on_skin_ends_softly() {
         assert!(pair[1] - pair[0] < 0.2 * change, "there is a line across the skin: {rows:?}");
     }
 }
+
+#[test]
+fn the_shadow_of_a_farther_edge_is_softer() {
+    // The lamp shines at 45° from the left. A screen parallel to a wall ends where its shadow ends in the middle.
+    let rectangle = |x: [f32; 2], z: f32| {
+        [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| Vec3::new(x[i], [-0.2, 0.2][j], z))
+    };
+    let width = |distance: f32| {
+        let wall = rectangle([-0.2, 0.2], 0.0);
+        let screen = rectangle([-0.4, -distance], distance);
+        let triangles = [[0, 1, 2], [0, 2, 3]];
+        let bodies = [&wall, &screen].map(|positions| MeshDraw {
+            positions,
+            normals: &[],
+            triangles: &triangles,
+            parts: &[],
+        });
+        let dark = |light: Light| Light { color: Vec3::ZERO, ..light };
+        let lamps = Lighting::default();
+        let key = Light { direction: Vec3::new(-1.0, 0.0, 1.0), ..lamps.key };
+        let lighting = Lighting { key, fill: dark(lamps.fill), rim: dark(lamps.rim), ..lamps };
+        let mut renderer = Renderer::new(512, 64);
+        let camera = Camera { fov: 0.7, ..camera() };
+        let image = renderer.draw(&Frame { camera, lighting, ..crate::support::frame(&[], &bodies) }).clone();
+        let row: Vec<f32> = (0..512).map(|x| f32::from(image.pixel(x, 32)[1])).collect();
+        // Outside of the shadow, the wall does not shadow itself.
+        let lit = row[511];
+        assert!(row[400..].iter().all(|x| (x - lit).abs() <= 2.0), "{row:?}");
+        let dark = row.iter().copied().fold(f32::MAX, f32::min);
+        let within = |share: f32| row.iter().filter(|x| **x < dark + share * (lit - dark)).count();
+        within(0.9) - within(0.1)
+    };
+    let [near, far] = [0.02, 0.07].map(width);
+    assert!(near > 0 && far > 2 * near, "the edge is {near} pixels wide if near, and {far} if far");
+}

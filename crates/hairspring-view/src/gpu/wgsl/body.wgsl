@@ -147,7 +147,7 @@ fn light(in: Vertex) -> @location(0) vec4f {
     let depth = shadow_around(p + n * (2.5 * frame.voxel));
     let thinned = exp(-HAIR_SHADE * depth.xyz);
     // Key, rim and fill.
-    let open = vec3f(soft_body_light(p + n * 5e-4) * thinned.x, thinned.yz);
+    let open = vec3f(area_body_light(p + n * 5e-4, n) * thinned.x, thinned.yz);
     let nv = max(dot(n, eye), 1e-3);
     var diffuse = vec3f(0.0);
     var gloss = vec3f(0.0);
@@ -163,7 +163,8 @@ fn light(in: Vertex) -> @location(0) vec4f {
     let sky = mix(frame.ground, frame.sky, 0.5 + 0.5 * n.y) * open_sky + frame.lamps[0].color * KEY_BOUNCE;
     let grazing = (1.0 - nv) * (1.0 - nv);
     let sheen = SHEEN * grazing * grazing * depth.w;
-    let lit = cloth.xyz * (diffuse + sky) + gloss + frame.sky * sheen;
+    let shiny = min((1.0 - cloth.w) / (1.0 - MATTE), 1.0);
+    let lit = cloth.xyz * (diffuse + sky) + (gloss + frame.sky * sheen) * shiny;
     return vec4f(select(vec3f(0.0), lit, known(lit)), 1.0);
 }
 

@@ -136,3 +136,46 @@ fn soft_body_light(p: vec3f) -> f32 {
     }
     return sum / (SOFT_RADIUS * SOFT_RADIUS);
 }
+
+/// Height of a tap of the map above a plane; far below it for empty texels and outside of the map.
+fn tap_over(middle: vec2f, place: vec2f, spacing: f32, plane: f32) -> f32 {
+    let at = middle + place * spacing;
+    if !(all(at >= vec2f(0.0)) && all(at < vec2f(frame.map_side))) {
+        return -1e9;
+    }
+    let depth = textureLoad(heights, vec2i(at), 0);
+    return select(frame.map_low + depth * frame.map_range - plane, -1e9, depth <= 0.0);
+}
+
+/// `DepthMap::area_light`.
+fn area_body_light(p: vec3f, n: vec3f) -> f32 {
+    if frame.map_scale <= 0.0 {
+        return 1.0;
+    }
+    let t = texel(p) + vec3f(0.0, 0.0, SKIN_BIAS);
+    let facing = max(dot(n, frame.map_toward), STEEPEST);
+    let slope = vec2f(dot(n, frame.map_right), dot(n, frame.map_up)) / (-facing * frame.map_scale);
+    var spacing = max(WIDEST * frame.map_scale / SOFT_RADIUS, 1.0);
+    var sum = 0.0;
+    var count = 0.0;
+    for (var y = 0.5 - SOFT_RADIUS; y < SOFT_RADIUS; y += 1.0) {
+        for (var x = 0.5 - SOFT_RADIUS; x < SOFT_RADIUS; x += 1.0) {
+            let over = tap_over(t.xy, vec2f(x, y), spacing, t.z + dot(vec2f(x, y), slope * spacing));
+            sum += max(over, 0.0);
+            count += select(0.0, 1.0, over > 0.0);
+        }
+    }
+    if count <= 0.0 {
+        return 1.0;
+    }
+    spacing = max(min(LAMP * sum / count, WIDEST) * frame.map_scale / SOFT_RADIUS, 1.0);
+    var lit = 0.0;
+    for (var y = 0.5 - SOFT_RADIUS; y < SOFT_RADIUS; y += 1.0) {
+        for (var x = 0.5 - SOFT_RADIUS; x < SOFT_RADIUS; x += 1.0) {
+            let over = tap_over(t.xy, vec2f(x, y), spacing, t.z + dot(vec2f(x, y), slope * spacing));
+            let weight = (1.0 - abs(x) / SOFT_RADIUS) * (1.0 - abs(y) / SOFT_RADIUS);
+            lit += weight * (1.0 - clamp(over * SLOPE, 0.0, 1.0));
+        }
+    }
+    return lit / (SOFT_RADIUS * SOFT_RADIUS);
+}
