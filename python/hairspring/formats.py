@@ -54,6 +54,10 @@ FACTORS = ("stiffness", "damping", "drag", "friction", "charge", "density")
 """Names of the attributes with a number for each strand: factors of the material, and the share of strands that is kept."""
 
 MAX_POSITIONS = 150_000_000
+
+# Most samples of the motion of a body, and most of them a second [Hz].
+MAX_SAMPLES = 100_000
+MAX_RATE = 240.0
 """Largest number of vertex positions of a motion: 1,500 frames of 100,000 vertices."""
 
 

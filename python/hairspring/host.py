@@ -51,6 +51,18 @@ def read_body(path: str, scale: float | None, up: str | None):
     return read.vertices, read.triangles, read.uvs, read.colors, read.parts, read.frames, read.rate, known, read.notes
 
 
+def used_files(path: str) -> list[str]:
+    """Returns the layers and other files that a USD file consists of; none for Alembic. What is missing is left out."""
+    if Path(path).suffix.lower() not in USD:
+        return []
+    from pxr import UsdUtils
+
+    layers, assets, _ = UsdUtils.ComputeAllDependencies(str(path))
+    found = [layer.realPath for layer in layers] + list(assets)
+    # A file in an archive has brackets after the name of the archive.
+    return sorted({file for file in found if Path(file).is_file()})
+
+
 def write_cache(path: str, fps: float, first_frame: float, frames: int, source: str, over: str | None, grooms: list[dict]):
     """Begins a file of moving strands; `grooms` holds the fields of `MovingGroom`."""
     file = Path(path)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+# Most corners of a polygon that is not convex; larger ones become fans.
+MAX_CONCAVE = 128
+
 
 def with_phantoms(points: np.ndarray, basis: str) -> np.ndarray:
     """Adds the points that a pinned curve has in addition, so that it reaches its first and last point."""
@@ -70,10 +73,41 @@ def varying_count(control: int, kind: str, basis: str, wrap: str) -> int:
     return control if wrap == "pinned" else control - 2
 
 
-def triangulate(counts: np.ndarray, indices: np.ndarray) -> np.ndarray:
-    """Triangles of polygons, as fans: [triangles, 3]."""
+def triangulate(counts: np.ndarray, indices: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Triangles of polygons: [triangles, 3]. Convex ones become fans; of others, ears are clipped."""
     first = np.concatenate([[0], np.cumsum(counts)[:-1]])
     fans = np.maximum(counts - 2, 0)
     start = np.repeat(first, fans)
     step = np.arange(fans.sum()) - np.repeat(np.cumsum(fans) - fans, fans)
-    return np.stack([indices[start], indices[start + step + 1], indices[start + step + 2]], axis=1)
+    triangles = np.stack([indices[start], indices[start + step + 1], indices[start + step + 2]], axis=1)
+    # The triangles of a fan of a convex polygon have the same orientation.
+    corners = points[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    face = np.repeat(np.arange(len(counts)), fans)
+    whole = np.zeros((len(counts), 3))
+    np.add.at(whole, face, normals)
+    concave = np.unique(face[np.einsum("ij,ij->i", normals, whole[face]) < 0])
+    ends = np.cumsum(fans)
+    for f in concave[counts[concave] <= MAX_CONCAVE]:
+        polygon = indices[first[f] : first[f] + counts[f]]
+        triangles[ends[f] - fans[f] : ends[f]] = polygon[ears(points[polygon], whole[f])]
+    return triangles
+
+
+def ears(points: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Triangles of a simple polygon with this normal, by clipping ears (Meisters 1975): [corners - 2, 3]."""
+    left, found = list(range(len(points))), []
+    while len(left) > 3:
+        for k in range(len(left)):
+            a, b, c = left[k - 1], left[k], left[(k + 1) % len(left)]
+            side = [np.dot(np.cross(points[j] - points[i], points[left] - points[i]), normal) for i, j in ((a, b), (b, c), (c, a))]
+            convex = np.dot(np.cross(points[b] - points[a], points[c] - points[b]), normal) > 0
+            inside = np.all(np.array(side) > 0, axis=0)
+            if convex and not inside.any():
+                break
+        else:
+            # It crosses itself: any corner will do.
+            k = 0
+        found.append((left[k - 1], left[k], left[(k + 1) % len(left)]))
+        del left[k]
+    return np.array([*found, tuple(left)], np.int64)

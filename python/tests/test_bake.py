@@ -89,6 +89,26 @@ def test_a_resume_with_a_changed_wind_is_refused(tmp_path, program):
     assert code == 2 and "shot.toml has changed" in error
 
 
+def test_a_resume_with_a_changed_layer_of_a_usd_file_is_refused(tmp_path, program):
+    pytest.importorskip("pxr")
+    layer = """#usda 1.0
+( metersPerUnit = 1 )
+def BasisCurves "hair"
+{
+    int[] curveVertexCounts = [3]
+    point3f[] points = [(0, 1, 0), (0, 0.95, 0), (0, 0.9, 0)]
+    uniform token type = "linear"
+}
+"""
+    (tmp_path / "layer.usda").write_text(layer)
+    (tmp_path / "root.usda").write_text("#usda 1.0\n( metersPerUnit = 1\n subLayers = [@layer.usda@] )\n")
+    command = ["bake", tmp_path / "root.usda", "-o", tmp_path / "h.####.data", "--frames", "1-2"]
+    assert program(*command)[0] == 0
+    (tmp_path / "layer.usda").write_text(layer.replace("(0, 1, 0)", "(0, 1.1, 0)"))
+    code, _, error = program(*command, "--resume")
+    assert code == 2 and "layer.usda has changed" in error
+
+
 def test_a_point_cache_has_the_frames_of_the_bake(tmp_path, program):
     scene = shot(tmp_path)
     assert program("bake", scene, "-o", tmp_path / "h.####.data", "--frames", "1-3")[0] == 0

@@ -390,6 +390,71 @@ def test_topology_that_changes_is_refused(tmp_path):
         hs.Body.read(tmp_path / "a.usda")
 
 
+def a_mesh(stage, points, counts, indices):
+    mesh = UsdGeom.Mesh.Define(stage, "/m")
+    mesh.CreateFaceVertexCountsAttr(counts)
+    mesh.CreateFaceVertexIndicesAttr(indices)
+    mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(points, np.float32)))
+    return mesh
+
+
+CORNERS = np.array([[0, 0, 0], [0.2, 0, 0], [0, 0.2, 0], [0, 0, 0.2]])
+FACES = ([3] * 4, [0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2])
+
+
+@pytest.mark.parametrize("codes, spacing", [(1.0, 1 / 24), (24.0, 0.5), (24.0, 1.0)])
+def test_every_sample_of_a_mesh_counts(tmp_path, codes, spacing):
+    stage = new_stage(tmp_path / "m.usda")
+    stage.SetTimeCodesPerSecond(codes)
+    mesh = a_mesh(stage, CORNERS, *FACES)
+    for k in range(25):
+        mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy((CORNERS + [0.01 * k, 0, 0]).astype(np.float32)), k * spacing)
+    stage.Save()
+    read = usd.read_mesh(tmp_path / "m.usda")
+    assert read.rate == pytest.approx(codes / spacing, rel=1e-4) and read.frames.shape == (25, 4, 3)
+    np.testing.assert_allclose(read.frames[:, 0, 0], 0.01 * np.arange(25), atol=1e-5)
+
+
+def test_another_number_of_points_or_an_endless_motion_is_refused(tmp_path):
+    for name, times, points, sentence in (
+        ("points", (1, 2), CORNERS[:3], "has 3 points at time 2 and 4 in the first sample"),
+        ("time", (0, 1e13), CORNERS, "the limit is 100000"),
+    ):
+        stage = new_stage(tmp_path / f"{name}.usda")
+        mesh = a_mesh(stage, CORNERS, *FACES)
+        mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy(CORNERS.astype(np.float32)), times[0])
+        mesh.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy(points.astype(np.float32)), times[1])
+        stage.Save()
+        with pytest.raises(hs.FileError, match=sentence):
+            hs.Body.read(tmp_path / f"{name}.usda")
+
+
+def volume(read):
+    a, b, c = (read.vertices[read.triangles[:, k]].astype(np.float64) for k in range(3))
+    return np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6
+
+
+@pytest.mark.parametrize("scale", [(1, 1, 1), (-1, 1, 1), (-1, -1, -1)])
+def test_a_mirrored_mesh_is_not_inside_out(tmp_path, scale):
+    stage = new_stage(tmp_path / "m.usda")
+    mesh = a_mesh(stage, CORNERS, *FACES)
+    mesh.AddScaleOp().Set(Gf.Vec3f(*scale))
+    stage.Save()
+    assert volume(usd.read_mesh(tmp_path / "m.usda")) == pytest.approx(0.2**3 / 6, rel=1e-4)
+
+
+def test_concave_polygons_get_triangles_inside_them(tmp_path):
+    corners = np.array([[0, 0, 0], [3, 0, 0], [3, 1, 0], [1, 1, 0], [1, 3, 0], [0, 3, 0]])
+    for turn in range(6):
+        stage = new_stage(tmp_path / f"m{turn}.usda")
+        a_mesh(stage, corners, [6], np.roll(np.arange(6), turn).tolist())
+        stage.Save()
+        read = usd.read_mesh(tmp_path / f"m{turn}.usda")
+        a, b, c = (read.vertices[read.triangles[:, k]] for k in range(3))
+        areas = np.cross(b - a, c - a)[:, 2] / 2
+        assert (areas > 0).all() and areas.sum() == pytest.approx(5)
+
+
 def test_cameras_are_read(tmp_path):
     stage = new_stage(tmp_path / "a.usda", "Z", 0.01)
     camera = UsdGeom.Camera.Define(stage, "/cam")

@@ -36,7 +36,7 @@ fn main() {
     for model in Model::ALL {
         let material = Material { model, ..Material::default() };
         let mut simulation = Simulation::builder(groom.clone()).materials(&[material]).build().unwrap();
-        simulation.set_volume(&Volume { method: VolumeMethod::Incompressible, ..Volume::default() });
+        simulation.set_volume(&Volume { method: VolumeMethod::Incompressible, ..Volume::default() }).unwrap();
         let ball = ColliderShape::Sphere { center: Vec3::new(0.2, 0.05, 0.02), radius: 0.03 };
         let colliders = [MovingCollider::at_rest(ball, RigidTransform::default())];
         let anchor = RigidTransform::default();

@@ -74,7 +74,7 @@ fn a_stopped_bake_leaves_complete_files() {
     let files: Vec<_> = files.filter(|path| path.extension().unwrap() == "hair").collect();
     let (scene, text) = (folder.path().join("scene.toml"), window.state().session().document().text());
     let frames: Vec<u32> = (1..=files.len() as u32 + 1).collect();
-    assert_eq!(unfinished(&pattern, &frames, (&scene, text), "60"), [files.len() as u32 + 1]);
+    assert_eq!(unfinished(&pattern, &frames, (&scene, text), "30"), [files.len() as u32 + 1]);
     assert!(files.len() >= 3 && files.len() < 100_000);
     let first = points(&folder.path().join("hair.0001.hair")).len();
     assert!(files.iter().all(|file| points(file).len() == first), "a file is not complete");

@@ -185,7 +185,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         Solver { substeps, integrator, quality, ..Solver::default() },
     );
     bench.wind = Wind { velocity: Vec3::Z * options.wind, gust: 0.5, gust_rate: 1.0 };
-    bench.simulation.set_volume(&Volume { method, ..Volume::default() });
+    bench.simulation.set_volume(&Volume { method, ..Volume::default() }).unwrap();
     if let Some(name) = &options.simd
         && !bench.simulation.use_instruction_set(name)
     {

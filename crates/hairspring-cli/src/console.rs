@@ -20,12 +20,29 @@ pub struct Console {
 /// The first error of standard output.
 static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
 
+/// The text with control characters escaped, except line ends: names in a scene file must not control the terminal.
+fn printable(text: &impl Display) -> String {
+    let text = text.to_string();
+    let controls = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if !text.contains(controls) {
+        return text;
+    }
+    text.chars().fold(String::new(), |mut shown, c| {
+        if controls(c) {
+            shown.extend(c.escape_default())
+        } else {
+            shown.push(c)
+        }
+        shown
+    })
+}
+
 /// Prints a line of the result. After an error (a closed pipe, a full disk) nothing more is printed;
 /// [`finish`] returns the error, so that a command still completes its files.
 pub fn say(line: impl Display) {
     let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
     if unprinted.is_none() {
-        *unprinted = writeln!(stdout(), "{line}").err();
+        *unprinted = writeln!(stdout(), "{}", printable(&line)).err();
     }
 }
 
@@ -46,7 +63,7 @@ pub fn unprinted(why: io::Error) -> Fault {
 
 /// Prints a note that does not depend on the settings of the console.
 pub fn note(line: impl Display) {
-    let _ = writeln!(stderr(), "note: {line}");
+    let _ = writeln!(stderr(), "note: {}", printable(&line));
 }
 
 /// Prints an event of `--progress json`.
@@ -56,7 +73,7 @@ fn event(event: &serde_json::Value) {
 
 /// Prints a line about an error.
 pub fn complain(line: &impl Display) {
-    let _ = writeln!(stderr(), "error: {line}");
+    let _ = writeln!(stderr(), "error: {}", printable(line));
 }
 
 impl Console {
@@ -82,7 +99,7 @@ impl Console {
     /// Prints what the program is doing, if it takes a moment.
     pub fn doing(self, line: impl Display) {
         if !self.quiet {
-            let _ = writeln!(stderr(), "{line}");
+            let _ = writeln!(stderr(), "{}", printable(&line));
         }
     }
 
@@ -160,5 +177,15 @@ impl Drop for Progress {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_do_not_control_the_terminal() {
+        assert_eq!(printable(&"a\u{1b}[31mb\n\tc"), "a\\u{1b}[31mb\n\tc");
     }
 }

@@ -18,9 +18,20 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 /// What the first signal waits for.
 static CURRENT: Mutex<Option<&'static str>> = Mutex::new(None);
 
+/// Makes a write beyond the limit for the size of files (`ulimit -f`) an error, as on a full disk, instead of the end
+/// of the process.
+fn report_file_size_limit() {
+    #[cfg(unix)]
+    // SAFETY: ignores a signal. No handler runs, and no other code depends on its disposition.
+    unsafe {
+        libc::signal(libc::SIGXFSZ, libc::SIG_IGN);
+    }
+}
+
 /// Installs the handler. From here on a signal ends the program at once. `quiet`: no note after the first
 /// signal of a run that waits for its frame.
 pub fn listen(quiet: bool) {
+    report_file_size_limit();
     // If the system has no such signal, the run can only be killed.
     let _ = ctrlc::set_handler(move || {
         // The lock is held until the exit, so that the run does not begin to write frames meanwhile.

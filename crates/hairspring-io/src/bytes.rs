@@ -82,7 +82,7 @@ impl<'a> Bytes<'a> {
     }
 }
 
-/// Returns an empty vector with room for `count` values, or a sentence if there is no memory for them.
+/// Returns an empty vector with room for `count` values, or an error message if there is no memory for them.
 pub(crate) fn with_room<T>(count: usize) -> Result<Vec<T>, Problem> {
     let mut values = Vec::new();
     values.try_reserve_exact(count).map_err(|_| {
@@ -113,7 +113,7 @@ pub(crate) fn read_regular(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>
         return Ok(None);
     }
     let mut data = Vec::new();
-    let out_of_memory = |_| io::Error::other(format!("there is no memory for its {size} bytes"));
+    let out_of_memory = |_| io::Error::other(format!("out of memory: it has {size} bytes"));
     data.try_reserve_exact(usize::try_from(size).unwrap_or(usize::MAX)).map_err(out_of_memory)?;
     file.take(limit.saturating_add(1)).read_to_end(&mut data)?;
     Ok((data.len() as u64 <= limit).then_some(data))

@@ -14,7 +14,7 @@
 //! tabs. The points of a strand are consecutive, root first.
 
 use crate::{
-    Place, Problem,
+    Place, Problem, color,
     strand_attributes::{GROUP, NUMBERS, StrandAttributes},
     strands::Read,
     text::{as_text, name},
@@ -22,6 +22,7 @@ use crate::{
 };
 use glam::Vec3;
 use hairspring::groom::Groom;
+use std::collections::HashSet;
 
 /// Reads a table of points, in its own units.
 ///
@@ -51,7 +52,11 @@ struct Columns {
 }
 
 pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
-    let text = as_text(data);
+    let mut text = as_text(data);
+    // The line ends of old spreadsheets.
+    if !text.contains('\n') {
+        text = text.replace('\r', "\n").into();
+    }
     let mut lines =
         text.lines().enumerate().map(|(k, line)| (k + 1, line.trim())).filter(|(_, line)| !line.is_empty());
     let (_, header) = lines.next().ok_or_else(|| Problem::whole("the table is empty"))?;
@@ -60,9 +65,10 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let columns = columns(header, separator, &mut notes)?;
     let mut groom = Groom { offsets: vec![0], ..Groom::default() };
     let (mut radii, mut last, mut attributes) = (Vec::new(), None, StrandAttributes::default());
+    let mut begun = HashSet::new();
     for (number, line) in lines {
         let wrong = |text: String| Problem::new(Place::Line(number), text);
-        let cells: Vec<&str> = line.split(separator).map(str::trim).collect();
+        let cells: Vec<&str> = line.split(separator).map(unquoted).collect();
         if cells.len() != columns.count {
             let text =
                 format!("the line has {} columns, and the first line names {}", cells.len(), columns.count);
@@ -80,17 +86,26 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
             groom.offsets.push(groom.points.len() as u32);
         }
         if last != Some(strand) {
+            if !begun.insert(strand) {
+                return Err(wrong(format!(
+                    "strand {} begins again; keep the lines of a strand together",
+                    name(strand)
+                )));
+            }
             for (attribute, k) in &columns.numbers {
                 let value = cell(*k)?;
-                let coordinate = ["u", "v"].contains(&NUMBERS[*attribute]);
-                if !(value.is_finite() && (coordinate || value >= 0.0)) {
-                    let expected = if coordinate { "finite" } else { "0 or more" };
+                let (valid, expected) = match NUMBERS[*attribute] {
+                    "u" | "v" => (true, "finite"),
+                    "density" => ((0.0..=1.0).contains(&value), "0 to 1"),
+                    _ => (value >= 0.0, "0 or more"),
+                };
+                if !(value.is_finite() && valid) {
                     let text = format!("`{}` is {}; it must be {expected}", NUMBERS[*attribute], cells[*k]);
                     return Err(wrong(text));
                 }
                 attributes.numbers[*attribute].push(value);
             }
-            attributes.groups.extend(columns.group.map(|k| name(cells[k].trim_matches('"'))));
+            attributes.groups.extend(columns.group.map(|k| name(cells[k])));
         }
         last = Some(strand);
         groom.points.push(vector(columns.position)?);
@@ -98,21 +113,28 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
             radii.push(factor * cell(k)?);
         }
         if let Some(k) = columns.color {
-            groom.colors.push(vector(k)?.clamp(Vec3::ZERO, Vec3::ONE));
+            groom.colors.push(vector(k)?);
         }
     }
     if last.is_some() {
         groom.offsets.push(groom.points.len() as u32);
     }
+    notes.extend(color::into_range(&mut groom.colors));
     let radii = columns.radius.map(|_| radii);
     let mut read = Read { groom, radii, true_radii: false, units: FileUnits::default(), notes };
     attributes.apply(&mut read);
     Ok(read)
 }
 
+/// A cell without spaces and quotation marks around it.
+fn unquoted(cell: &str) -> &str {
+    let cell = cell.trim();
+    cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).unwrap_or(cell)
+}
+
 fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Columns, Problem> {
     let names: Vec<String> =
-        header.split(separator).map(|name| name.trim().trim_matches('"').to_ascii_lowercase()).collect();
+        header.split(separator).map(|name| unquoted(name).to_ascii_lowercase()).collect();
     let find = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&name.as_str()));
     let required = |wanted: &[&str]| {
         find(wanted).ok_or_else(|| {
@@ -128,7 +150,12 @@ fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Col
         position: [required(&["x"])?, required(&["y"])?, required(&["z"])?],
         radius,
         color: if let [Some(r), Some(g), Some(b)] = color { Some([r, g, b]) } else { None },
-        numbers: NUMBERS.iter().enumerate().filter_map(|(a, name)| Some((a, find(&[name])?))).collect(),
+        numbers: (NUMBERS.iter().enumerate())
+            .filter(|(_, name)| {
+                !["u", "v"].contains(name) || (find(&["u"]).is_some() && find(&["v"]).is_some())
+            })
+            .filter_map(|(a, name)| Some((a, find(&[name])?)))
+            .collect(),
         group: find(&[GROUP]),
         count: names.len(),
     };
@@ -150,6 +177,20 @@ fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Col
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn points_of_a_strand_must_be_together() {
+        let table = |strands: [&str; 3]| strands.map(|s| format!("{s},0,0,0\n")).concat();
+        let parse = |strands| read(format!("strand,x,y,z\n{}", table(strands)).as_bytes());
+        assert!(parse(["0", "0", "1"]).is_ok());
+        // Quotation marks and the line ends of old spreadsheets do not matter.
+        let table = "\"strand\",\"x\",\"y\",\"z\",\"u\"\r\"0\",\"1\",\"2\",\"3\",\"0\"\r0,4,5,6,0\r";
+        let quoted = super::read(table.as_bytes()).unwrap();
+        assert_eq!(quoted.groom.points, [Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0)]);
+        assert_eq!(quoted.notes, ["ignored columns: u"]);
+        let error = parse(["0", "1", "0"]).err().unwrap().to_string();
+        assert!(error.contains("line 4: strand 0 begins again"), "{error}");
+    }
 
     #[test]
     fn tables_are_read_with_any_separator_and_order() {

@@ -1,6 +1,8 @@
 //! Formats that a host program reads and writes: USD and Alembic, by the Python package.
 
-use crate::{Axis, Character, Error, Format, ReadOptions, Result, load, strands::Read, units::FileUnits};
+use crate::{
+    Axis, Character, Error, Format, Problem, ReadOptions, Result, load, strands::Read, units::FileUnits,
+};
 use hairspring::{groom::Groom, material::Material};
 use std::{
     path::{Path, PathBuf},
@@ -38,6 +40,12 @@ pub trait ExternalFormats: Send + Sync {
         path: &Path,
         options: &ReadOptions,
     ) -> std::result::Result<ExternalFile<Character>, String>;
+
+    /// Returns the other files that `path` consists of, such as the layers of a USD stage.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    fn used_files(&self, path: &Path) -> std::result::Result<Vec<PathBuf>, String>;
 
     /// Begins to write strands that move to one file.
     ///
@@ -115,12 +123,26 @@ fn with_formats<T>(
     act(formats).map_err(unsupported)
 }
 
+/// Reads a file, and records the content of all files that it consists of for a manifest.
+fn read<T>(
+    path: &Path,
+    read: impl FnOnce(&dyn ExternalFormats) -> std::result::Result<T, String>,
+) -> Result<T> {
+    // Reports a missing file as for other formats.
+    load::bytes_of(path)?;
+    let (value, files) = with_formats(path, |formats| {
+        Ok(read(formats).and_then(|value| Ok((value, formats.used_files(path)?))))
+    })?
+    .map_err(|reason| Problem::whole(reason).in_file(path))?;
+    for file in files.iter().filter(|file| *file != path) {
+        load::bytes_of(file)?;
+    }
+    Ok(value)
+}
+
 /// Reads a groom, with its unit still to be guessed if it is not known.
 pub(crate) fn read_groom(path: &Path, options: &ReadOptions) -> Result<Read> {
-    // Reports a missing file as for other formats, and records the content for a manifest.
-    load::bytes_of(path)?;
-    let ExternalFile { value, unit_known, notes } =
-        with_formats(path, |formats| formats.read_groom(path, options))?;
+    let ExternalFile { value, unit_known, notes } = read(path, |formats| formats.read_groom(path, options))?;
     let mut groom = value;
     let radii = Some(std::mem::take(&mut groom.radii)).filter(|radii| !radii.is_empty());
     Ok(Read { groom, radii, true_radii: false, units: units(unit_known), notes })
@@ -128,9 +150,7 @@ pub(crate) fn read_groom(path: &Path, options: &ReadOptions) -> Result<Read> {
 
 /// Reads a body, with its unit still to be guessed if it is not known.
 pub(crate) fn read_body(path: &Path, options: &ReadOptions) -> Result<(Character, FileUnits, Vec<String>)> {
-    load::bytes_of(path)?;
-    let ExternalFile { value, unit_known, notes } =
-        with_formats(path, |formats| formats.read_body(path, options))?;
+    let ExternalFile { value, unit_known, notes } = read(path, |formats| formats.read_body(path, options))?;
     Ok((value, units(unit_known), notes))
 }
 

@@ -8,6 +8,7 @@
 
 mod bytes;
 mod chains;
+mod color;
 mod error;
 mod external;
 mod frame_writer;

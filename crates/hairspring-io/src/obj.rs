@@ -6,7 +6,7 @@
 //! computed. Materials are not read: a scene file sets the color.
 
 use crate::{
-    Place, Problem,
+    Place, Problem, chains,
     polygon::triangulate,
     strands::Read,
     text::{self, Lines, as_text, finite, shortened},
@@ -118,8 +118,8 @@ pub(crate) fn holds_polylines(data: &[u8]) -> bool {
 pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     let text = as_text(data);
     let (mut vertices, mut uvs): (Vec<Vec3>, Vec<Vec2>) = (Vec::new(), Vec::new());
-    let mut groom = Groom { offsets: vec![0], ..Groom::default() };
-    let (mut last, mut faces, mut has_uvs) = (None, 0usize, false);
+    let mut lines = Polylines::default();
+    let mut faces = 0usize;
     for (line_number, line) in statements(&text) {
         let mut words = line.split_whitespace();
         match words.next() {
@@ -133,41 +133,106 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
                 if rest.peek().is_none() {
                     continue;
                 }
-                // Some programs write each segment as a line of its own: one that begins where the line before it
-                // ends goes on with the strand.
-                if last == Some(root.0) {
-                    groom.offsets.pop();
-                } else {
-                    groom.points.push(vertices[root.0 as usize]);
-                    let uv = root.1.and_then(|uv| uvs.get(uv as usize));
-                    has_uvs |= uv.is_some();
-                    groom.root_uvs.push(uv.copied().unwrap_or_default());
-                }
+                lines.begin(root);
                 for corner in rest {
-                    let (v, _) = corner?;
-                    groom.points.push(vertices[v as usize]);
-                    last = Some(v);
+                    lines.push(corner?);
                 }
-                let end = u32::try_from(groom.points.len())
-                    .map_err(|_| Problem::limit(Place::Line(line_number), "more than 4 billion points"))?;
-                groom.offsets.push(end);
+                if u32::try_from(lines.order.len()).is_err() {
+                    return Err(Problem::limit(Place::Line(line_number), "more than 4 billion points"));
+                }
             }
             _ => {}
         }
     }
-    if groom.points.is_empty() {
+    if lines.order.is_empty() {
         return Err(Problem::whole(
             "the file has no polylines (`l`), which are the strands of a groom; export the curves, not a mesh",
         ));
     }
-    if !has_uvs {
-        groom.root_uvs.clear();
-    }
     let mut notes = Vec::new();
+    notes.extend(lines.join());
+    let root_uvs: Vec<_> =
+        lines.roots().map(|root| lines.uv(root).and_then(|uv| uvs.get(uv as usize))).collect();
+    let groom = Groom {
+        points: lines.order.iter().map(|v| vertices[*v as usize]).collect(),
+        root_uvs: match root_uvs.iter().any(Option::is_some) {
+            true => root_uvs.iter().map(|uv| uv.copied().unwrap_or_default()).collect(),
+            false => Vec::new(),
+        },
+        offsets: lines.offsets,
+        ..Groom::default()
+    };
     if faces > 0 {
         notes.push(format!("{faces} faces are left out, because a groom is read from polylines"));
     }
     Ok(Read { groom, radii: None, true_radii: false, units: FileUnits::default(), notes })
+}
+
+/// The polylines of a file, as vertices.
+#[derive(Default)]
+struct Polylines {
+    /// Vertices, polyline after polyline.
+    order: Vec<u32>,
+    /// Index in `order` of each polyline's first vertex, and the length of `order` at the end.
+    offsets: Vec<u32>,
+    /// Vertices with texture coordinates, and those.
+    uvs: Vec<[u32; 2]>,
+}
+
+impl Polylines {
+    /// Starts a line at a vertex. Some programs write each segment as a line of its own: one that begins where the
+    /// line before it ends continues the polyline.
+    fn begin(&mut self, corner: (u32, Option<u32>)) {
+        if self.offsets.is_empty() {
+            self.offsets.push(0);
+        }
+        if self.order.last() == Some(&corner.0) {
+            self.offsets.pop();
+            self.offsets.push(self.order.len() as u32);
+        } else {
+            self.offsets.push(self.order.len() as u32);
+            self.push(corner);
+        }
+    }
+
+    /// Adds a vertex to the last polyline.
+    fn push(&mut self, (vertex, uv): (u32, Option<u32>)) {
+        self.order.push(vertex);
+        self.uvs.extend(uv.map(|uv| [vertex, uv]));
+        if let Some(end) = self.offsets.last_mut() {
+            *end = self.order.len() as u32;
+        }
+    }
+
+    /// Joins polylines that share an end, such as segments in any order and direction. Returns a note if there are
+    /// any. Vertices with more than two segments stay as they are.
+    fn join(&mut self) -> Option<String> {
+        self.uvs.sort_unstable();
+        let mut vertices = self.order.clone();
+        vertices.sort_unstable();
+        vertices.windows(2).find(|pair| pair[0] == pair[1])?;
+        let lines = self.offsets.windows(2).map(|line| &self.order[line[0] as usize..line[1] as usize]);
+        let edges: Vec<[u32; 2]> =
+            lines.flat_map(|line| line.windows(2)).map(|edge| [edge[0], edge[1]]).collect();
+        let joined = chains::join(&edges).ok()?;
+        let before = self.offsets.len() - 1;
+        (self.order, self.offsets) = (joined.order, joined.offsets);
+        Some(format!("{before} lines that share their ends are joined to {} strands", self.offsets.len() - 1))
+    }
+
+    /// The first vertex of each polyline.
+    fn roots(&self) -> impl Iterator<Item = u32> {
+        self.offsets
+            .iter()
+            .take(self.offsets.len().saturating_sub(1))
+            .map(|first| self.order[*first as usize])
+    }
+
+    /// Index of the texture coordinates of a vertex.
+    fn uv(&self, vertex: u32) -> Option<u32> {
+        let at = self.uvs.partition_point(|uv| uv[0] < vertex);
+        self.uvs.get(at).filter(|uv| uv[0] == vertex).map(|uv| uv[1])
+    }
 }
 
 /// What a mesh of the file lacks.

@@ -81,7 +81,7 @@ fn distance(skin: &NearestTree<'_>, p: Vec3) -> Option<f32> {
 
 /// Returns the unit [m] that puts most strands, given by their two ends, on the skin when they are placed by
 /// `place`. Units are in order of preference: a later one must be twice as near. `None` if no unit puts them
-/// within a fiftieth of the body's `size` [m].
+/// within a tenth of the body's `size` [m].
 pub(crate) fn unit_on_skin(
     ends: &[[Vec3; 2]],
     units: &[f32],
@@ -89,7 +89,7 @@ pub(crate) fn unit_on_skin(
     skin: &NearestTree<'_>,
     size: f32,
 ) -> Option<f32> {
-    let near = 0.02 * size;
+    let (near, equal) = (0.1 * size, 2e-4 * size);
     let median = |unit: f32| {
         let nearer = |ends: &[Vec3; 2]| {
             let [a, b] = ends.map(|p| distance(skin, place.transform_point3(p * unit)));
@@ -102,9 +102,9 @@ pub(crate) fn unit_on_skin(
     let mut best: Option<(f32, f32)> = None;
     for unit in units {
         let Some(distance) = median(*unit).filter(|d| *d <= near) else { continue };
-        // Distances below a hundredth of that are equal.
-        if best.is_none_or(|(_, b)| distance.max(0.01 * near) * 2.0 < b) {
-            best = Some((*unit, distance.max(0.01 * near)));
+        // Smaller distances are equal.
+        if best.is_none_or(|(_, b)| distance.max(equal) * 2.0 < b) {
+            best = Some((*unit, distance.max(equal)));
         }
     }
     best.map(|(unit, _)| unit)

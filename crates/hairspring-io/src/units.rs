@@ -99,8 +99,8 @@ pub(crate) fn turn_of(up: Axis) -> Quat {
 }
 
 /// Guesses the meters per unit of a body whose box has a longest side of `extent` units, and returns a note
-/// about it. The unit is meters if that is plausible, otherwise the unit that gives the size nearest to a
-/// typical one.
+/// about it. The unit is meters if that is plausible, otherwise the unit that gives a plausible size, and of
+/// those the one nearest to a typical size.
 fn guess_body(extent: f32) -> (f32, Option<String>) {
     if !(extent.is_finite() && extent > 0.0) {
         return (1.0, None);
@@ -110,7 +110,9 @@ fn guess_body(extent: f32) -> (f32, Option<String>) {
     }
     let off = |scale: f32| {
         let typical = TYPICAL_BODIES.iter();
-        typical.map(|t| (extent * scale / t).ln().abs()).fold(f32::INFINITY, f32::min)
+        let off = typical.map(|t| (extent * scale / t).ln().abs()).fold(f32::INFINITY, f32::min);
+        // A plausible size comes first.
+        if BODY.contains(&(extent * scale)) { off } else { off + 100.0 }
     };
     let scale = nearest(off);
     (scale, Some(note(scale, extent * scale, BODY.contains(&(extent * scale)))))

@@ -15,7 +15,7 @@ use pyo3::{
     prelude::*,
     types::{PyDict, PyModule},
 };
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The readers and writers of the module `hairspring.host`.
 pub struct PythonFormats;
@@ -88,6 +88,10 @@ impl ExternalFormats for PythonFormats {
             let value = Character { body: Body::rigid(mesh), vertex_cache, ..Character::default() };
             Ok(ExternalFile { value, unit_known, notes })
         })
+    }
+
+    fn used_files(&self, path: &Path) -> Result<Vec<PathBuf>, String> {
+        with_host(|host| host.call_method1("used_files", (path,))?.extract())
     }
 
     fn write_cache(

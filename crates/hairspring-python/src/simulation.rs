@@ -103,7 +103,7 @@ impl Simulation {
             })
             .map_err(setting)?;
         if let Some(volume) = volume {
-            inner.set_volume(&volume.0);
+            inner.set_volume(&volume.0).map_err(setting)?;
         }
         let mut first = vec![0; groom.strand_count()];
         let mut offsets = vec![0];

@@ -53,7 +53,7 @@ fn hair_on_hair_allocates_nothing() {
     for method in VolumeMethod::ALL {
         let counted = on_threads(1, || {
             let mut bench = Bench::new(200, 16, Solver::default());
-            bench.simulation.set_volume(&Volume { method, ..Volume::default() });
+            bench.simulation.set_volume(&Volume { method, ..Volume::default() }).unwrap();
             bench.step();
             let before = COUNT.get();
             for _ in 0..20 {
@@ -66,7 +66,10 @@ fn hair_on_hair_allocates_nothing() {
     // Strand contact.
     let counted = on_threads(1, || {
         let mut bench = Bench::new(200, 16, Solver::default());
-        bench.simulation.set_neighbours(&Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
+        bench
+            .simulation
+            .set_neighbours(&Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() })
+            .unwrap();
         bench.step();
         let before = COUNT.get();
         for _ in 0..40 {
@@ -125,7 +128,7 @@ fn wind_and_charge_allocate_nothing() {
         let roots = roots(&groom, REST);
         let material = Material { charge: 1e-9, ..Material::default() };
         let mut simulation = Simulation::builder(groom).materials(&[material]).build().unwrap();
-        simulation.set_wind_occlusion(&WindOcclusion { hair: 50.0, ..WindOcclusion::default() });
+        simulation.set_wind_occlusion(&WindOcclusion { hair: 50.0, ..WindOcclusion::default() }).unwrap();
         let flow = Flow::Point { center: Vec3::ZERO, radius: 0.1, speed: 1.0 };
         let sources = [Source { flow, pose: REST, factor: 1.0 }];
         let ball = ChargedBall { centers: [Vec3::Z; 2], radius: 0.1, charge: 1e-7 };

@@ -8,7 +8,7 @@ from typing import Iterator
 import numpy as np
 from alembic3d import Abc, AbcGeom
 
-from ..formats import FACTORS, MAX_POSITIONS, Curves, FormatError, MovingMesh, as_lengths_and_points, guides_from_flags
+from ..formats import FACTORS, MAX_POSITIONS, MAX_SAMPLES, Curves, FormatError, MovingMesh, as_lengths_and_points, guides_from_flags
 from ..shapes import expand, on_curve, triangulate, varying_count
 
 BASES = {"kBezierBasis": "bezier", "kBsplineBasis": "bspline", "kCatmullromBasis": "catmullRom"}
@@ -251,9 +251,12 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
                 times.update(round(sampling.getSampleTime(k), 9) for k in range(count))
     steps = np.diff(sorted(times)) if len(times) > 1 else np.zeros(0)
     step = float(np.median(steps)) if len(steps) else 1 / 24
+    if len(times) > 1 and (max(times) - min(times)) / step > MAX_SAMPLES:
+        raise FormatError(f"the samples of the meshes span more than {MAX_SAMPLES} frames; shorten the motion")
     at = np.arange(min(times), max(times) + 0.5 * step, step) if len(times) > 1 else np.zeros(1)
     triangles, parts, total = [], [], 0
-    for mesh, _ in meshes:
+    sizes = []
+    for mesh, above in meshes:
         schema = mesh.getSchema()
         if "Heterogen" in str(schema.getTopologyVariance()):
             raise FormatError(f"the topology of {mesh.getFullName()} changes over time; export a mesh of constant topology")
@@ -263,20 +266,28 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
         count = len(sample.getPositions())
         if counts.sum() != len(indices) or (len(indices) and not 0 <= indices.min() <= indices.max() < count):
             raise FormatError(f"the faces of {mesh.getFullName()} name vertices that do not exist")
-        # Alembic's faces are clockwise seen from outside.
-        own = triangulate(counts, indices)[:, ::-1]
+        own = triangulate(counts, indices, np.array(sample.getPositions(), np.float64).reshape(-1, 3))
+        # Alembic's faces are clockwise seen from outside, unless the transform mirrors them.
+        if np.linalg.det(world(above, Abc.ISampleSelector())[:3, :3]) > 0:
+            own = own[:, ::-1]
         triangles.append(own + total)
         parts.append((mesh.getFullName(), len(own)))
+        sizes.append(count)
         total += count
     if len(at) * total > MAX_POSITIONS:
         raise FormatError(f"the motion holds more than {MAX_POSITIONS} positions; shorten it")
     frames = np.empty((len(at), total, 3), np.float32)
     for f, t in enumerate(at):
         selector, first = Abc.ISampleSelector(float(t)), 0
-        for mesh, above in meshes:
+        for (mesh, above), size in zip(meshes, sizes):
             points = place(mesh.getSchema().getValue(selector).getPositions(), world(above, selector), to)
-            frames[f, first : first + len(points)] = points
-            first += len(points)
+            if len(points) != size:
+                raise FormatError(
+                    f"{mesh.getFullName()} has {len(points)} points at {t:g} s and {size} in the first sample;"
+                    " export a mesh of constant topology"
+                )
+            frames[f, first : first + size] = points
+            first += size
     moves = len(at) > 1 and not np.allclose(frames, frames[:1], atol=1e-7)
     rate = 1 / step
     notes = [f"{len(at)} frames at {rate:g} Hz move the body's vertices"] if moves else []

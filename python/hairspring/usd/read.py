@@ -8,7 +8,7 @@ import numpy as np
 from pxr import Gf, Tf, Usd, UsdGeom, UsdSkel
 
 from . import material
-from ..formats import FACTORS, MAX_POSITIONS, Curves, FormatError, MovingMesh, as_lengths_and_points, guides_from_flags
+from ..formats import FACTORS, MAX_POSITIONS, MAX_RATE, MAX_SAMPLES, Curves, FormatError, MovingMesh, as_lengths_and_points, guides_from_flags
 from ..shapes import expand, on_curve, triangulate, varying_count
 
 AXIS = {"Y": np.eye(3), "Z": np.array([[1.0, 0, 0], [0, 0, 1], [0, -1, 0]])}
@@ -184,7 +184,9 @@ def assemble(strands: list[np.ndarray], parts: dict[str, list], names: list[str]
 
 
 def sample_times(stage: Usd.Stage, meshes: list[Usd.Prim]) -> tuple[np.ndarray, float]:
-    """The whole frames in which any of `meshes` moves, and frames per second; no frames if nothing moves."""
+    """The times [time codes] at which any of `meshes` moves, equally spaced, and their rate [Hz]; none if nothing moves.
+
+    They are as close as the closest two samples, but not closer than 1/240 s and not farther than one time code."""
     times: set[float] = set()
     for prim in meshes:
         times.update(UsdGeom.Mesh(prim).GetPointsAttr().GetTimeSamples())
@@ -195,7 +197,17 @@ def sample_times(stage: Usd.Stage, meshes: list[Usd.Prim]) -> tuple[np.ndarray, 
     rate = float(stage.GetTimeCodesPerSecond())
     if len(times) < 2:
         return np.zeros(0), rate
-    return np.arange(np.floor(min(times)), np.ceil(max(times)) + 0.5), rate
+    ordered = np.unique(np.round(sorted(times), 6))
+    step = max(min(1.0, float(np.diff(ordered).min(initial=1.0))), rate / MAX_RATE)
+    first = np.floor(ordered[0]) if step == 1.0 else ordered[0]
+    steps = (ordered[-1] - first) / step
+    if abs(steps - round(steps)) < 0.01 and round(steps) > 0:
+        # Written times are rounded.
+        step, steps = (ordered[-1] - first) / round(steps), round(steps)
+    count = int(np.ceil(steps)) + 1
+    if not np.isfinite(steps) or count > MAX_SAMPLES:
+        raise FormatError(f"the samples of the meshes span {count} frames; the limit is {MAX_SAMPLES}, so shorten the motion")
+    return first + step * np.arange(count), rate / step
 
 
 def baked_skins(stage: Usd.Stage) -> Usd.Stage:
@@ -224,11 +236,11 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
         raise FormatError("the stage has no visible meshes")
     times, rate = sample_times(stage, meshes)
     at = [Usd.TimeCode(float(t)) for t in times] or [Usd.TimeCode.EarliestTime()]
-    triangles, parts, uvs, colors, total = [], [], [], [], 0
+    triangles, parts, uvs, colors, sizes, total = [], [], [], [], [], 0
     for prim in meshes:
         mesh = UsdGeom.Mesh(prim)
         topology = [mesh.GetFaceVertexCountsAttr(), mesh.GetFaceVertexIndicesAttr()]
-        if any(len(a.GetTimeSamples()) > 1 and a.Get(at[0]) != a.Get(at[-1]) for a in topology):
+        if any(a.Get(t) != a.Get(at[0]) for a in topology for t in a.GetTimeSamples()):
             raise FormatError(f"the topology of {prim.GetPath()} changes over time; export a mesh of constant topology")
         points = mesh.GetPointsAttr().Get(at[0])
         counts, indices = (np.array(a.Get(at[0]) or [], np.int64) for a in topology)
@@ -236,9 +248,11 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
             raise FormatError(f"{prim.GetPath()} has no faces or no points")
         if counts.min() < 0 or counts.sum() != len(indices) or (len(indices) and indices.max() >= len(points)):
             raise FormatError(f"the faces of {prim.GetPath()} name vertices that do not exist")
-        own = triangulate(counts, indices)
-        if str(mesh.GetOrientationAttr().Get()) == "leftHanded":
+        own = triangulate(counts, indices, np.array(points, np.float64))
+        mirrored = np.linalg.det(world(prim, at[0], to)[0]) < 0
+        if (str(mesh.GetOrientationAttr().Get()) == "leftHanded") != mirrored:
             own = own[:, ::-1]
+        sizes.append(len(points))
         triangles.append(own + total)
         parts.append((str(prim.GetPath()), len(own)))
         uvs.append(of_vertices(prim, 2, indices, len(points), "st", "st0", "UVMap", "map1"))
@@ -249,12 +263,15 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
     frames = np.empty((len(at), total, 3), np.float32)
     for f, time in enumerate(at):
         first = 0
-        for prim in meshes:
+        for prim, size in zip(meshes, sizes):
             points = np.array(UsdGeom.Mesh(prim).GetPointsAttr().Get(time), np.float64)
+            if len(points) != size:
+                raise FormatError(
+                    f"{prim.GetPath()} has {len(points)} points at time {time.GetValue():g} and {size} in the first sample;"
+                    " export a mesh of constant topology"
+                )
             linear, shift = world(prim, time, to)
-            end = first + len(points)
-            if end > total:
-                raise FormatError(f"{prim.GetPath()} has another number of points at time {time}; export constant topology")
+            end = first + size
             frames[f, first:end] = points @ linear + shift
             first = end
     moves = len(at) > 1 and not np.allclose(frames, frames[:1], atol=1e-7)

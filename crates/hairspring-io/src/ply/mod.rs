@@ -5,7 +5,7 @@
 //! strands in one of three ways, of which the first counts:
 //!
 //! - an element `strand` or `polyline` with a list `vertex_indices`, root first;
-//! - a property `strand`, `strand_id` or `hair_id` of the vertices, which is the same for consecutive points of a
+//! - a property `strand`, `strand_id` or `hair_id` of the vertices, which is the same for the points of a
 //!   strand, root first;
 //! - an element `edge` with `vertex1` and `vertex2`. Edges are joined to polylines. Of the two ends of a polyline, the
 //!   vertex that comes first is the root.
@@ -16,6 +16,7 @@ mod rows;
 use crate::{
     Place, Problem,
     chains::{self, Chains},
+    color,
     strands::Read,
     text,
     units::FileUnits,
@@ -24,6 +25,7 @@ use file::Payload;
 use hairspring::groom::Groom;
 use ply_rs_bw::ply::{ElementDef, Header, PropertyType};
 use rows::{Edge, Skipped, Strand, Vertex};
+use std::collections::HashMap;
 
 /// Properties of a vertex that name its strand.
 const STRANDS: [&str; 3] = ["strand", "strand_id", "hair_id"];
@@ -173,13 +175,22 @@ fn of_lists(strands: &[Strand], vertices: usize) -> Result<Indices, Problem> {
     Ok(indices)
 }
 
-/// Returns the strands of consecutive vertices with the same number.
+/// Returns the strands of vertices with the same number, in the order in which they begin.
 fn of_ids(vertices: &[Vertex]) -> Indices {
     let mut indices = Indices { offsets: vec![0], ..Indices::default() };
+    let mut known = HashMap::new();
+    let places: Vec<usize> = vertices
+        .iter()
+        .map(|vertex| {
+            let next = known.len();
+            *known.entry(vertex.strand.to_bits()).or_insert(next)
+        })
+        .collect();
     indices.order = (0..vertices.len() as u32).collect();
-    let ends = vertices.windows(2).enumerate();
-    let ends = ends.filter(|(_, pair)| pair[0].strand.to_bits() != pair[1].strand.to_bits());
-    indices.offsets.extend(ends.map(|(k, _)| k as u32 + 1));
+    // Stable, so that the vertices of a strand keep their order.
+    indices.order.sort_by_key(|vertex| places[*vertex as usize]);
+    let place = |k: usize| places[indices.order[k] as usize];
+    indices.offsets.extend((1..vertices.len()).filter(|k| place(k - 1) != place(*k)).map(|k| k as u32));
     if !vertices.is_empty() {
         indices.offsets.push(vertices.len() as u32);
     }
@@ -197,10 +208,11 @@ fn strands_of(header: &Header, vertices: &[Vertex], indices: Indices, source: So
     };
     let mut groom = Groom { points: points().map(|v| v.position).collect(), ..Groom::default() };
     let has_color = ["red", "green", "blue"].iter().all(|name| has(name));
-    if has_color {
-        groom.colors = points().map(|v| v.color.clamp(glam::Vec3::ZERO, glam::Vec3::ONE)).collect();
-    }
     let mut notes = Vec::new();
+    if has_color {
+        groom.colors = points().map(|v| v.color).collect();
+        notes.extend(color::into_range(&mut groom.colors));
+    }
     let used = |name: &str| match name {
         "x" | "y" | "z" | "radius" => true,
         "width" => !has("radius"),

@@ -12,6 +12,9 @@ pub(super) fn line_at(text: &str, byte: usize) -> usize {
 pub(super) fn problem(text: &str, error: &toml::de::Error) -> Problem {
     match error.span() {
         Some(span) => {
+            if let Some(sentence) = wrong_brackets(text, span.start, error.message()) {
+                return Problem::line(line_at(text, span.start), sentence);
+            }
             let message = reworded(error.message(), key_of(text, span.start));
             Problem::line(line_at(text, span.start), message)
         }
@@ -31,6 +34,21 @@ pub(super) fn problem_in_table(
     let from = line_at(text, start);
     let line = named.or(key).and_then(|key| line_of_key(text, from, key)).unwrap_or(from);
     Problem::line(line, reworded(error.message(), key))
+}
+
+/// The sentence for a header at byte `at` with one bracket too few or too many.
+fn wrong_brackets(text: &str, at: usize, message: &str) -> Option<String> {
+    let found = message.strip_prefix("invalid type: map, expected ")?;
+    let line = text.lines().nth(line_at(text, at) - 1)?.trim_start();
+    let name = header_of(line)?;
+    match (line.starts_with("[["), found) {
+        (false, "a sequence") => {
+            Some(format!("`{name}` is a list of tables; write [[{name}]], with two brackets"))
+        }
+        // serde reads a list of tables as a table whose first field is the first of them.
+        (true, _) => Some(format!("`{name}` is one table; write [{name}], with one bracket")),
+        (false, _) => None,
+    }
 }
 
 /// The key whose value begins or continues at byte `at`, which may be in the header of its table.
@@ -115,6 +133,9 @@ fn reworded(message: &str, key: Option<&str>) -> String {
         return format!("{name} is missing");
     }
     let field = key.map_or("the value".into(), |key| format!("`{key}`"));
+    if message.starts_with("wanted exactly 1 element") {
+        return format!("{field} needs exactly one kind; name each in a table of its own");
+    }
     if message == "wanted string or table" {
         return format!("{field} needs a name in quotes");
     }

@@ -41,10 +41,18 @@ impl Reader<'_> {
             if files.is_empty() {
                 return Err(wrong(format!("there are no files {}", path.display())));
             }
-            let options = ReadOptions { scale: named.scale, up: named.up };
+            if let Some((before, missing)) = gap(&files) {
+                return Err(wrong(format!(
+                    "number {missing} is missing after {}; export it, or number the files without gaps",
+                    before.display()
+                )));
+            }
+            // The unit is that of the body, not one guessed for each file.
+            let options = ReadOptions { scale: Some(1.0), up: named.up };
+            let mut scale = named.scale;
             let mut frames: Vec<Vec<Vec3>> = Vec::with_capacity(files.len());
-            for file in &files {
-                let read = read_body(file, &options)?.value.body.mesh;
+            for (_, file) in &files {
+                let mut read = read_body(file, &options)?.value.body.mesh;
                 if read.positions.len() != vertices {
                     let text = format!(
                         "{} has {} vertices, and the body has {vertices}: export the meshes without changes of topology",
@@ -58,6 +66,9 @@ impl Reader<'_> {
                         "the files hold more than {MAX_POSITIONS} positions; shorten the motion"
                     )));
                 }
+                let scale = *scale
+                    .get_or_insert_with(|| scale_of(&read.positions, &body.mesh.positions).unwrap_or(1.0));
+                read.positions.iter_mut().for_each(|p| *p *= scale);
                 frames.push(read.positions);
             }
             (frames, 1.0)
@@ -88,8 +99,9 @@ fn scale_of(file: &[Vec3], body: &[Vec3]) -> Option<f32> {
     [1.0, 0.1, 0.01, 0.001, 0.0254].into_iter().find(|unit| (ratio / unit).ln().abs() < 0.5)
 }
 
-/// The existing files that a name with `#` signs stands for, in the order of their numbers; `None` without `#` signs.
-fn numbered(path: &Path) -> Option<Vec<PathBuf>> {
+/// The existing files that a name with `#` signs stands for, in the order of their numbers, with these; `None`
+/// without `#` signs.
+fn numbered(path: &Path) -> Option<Vec<(u64, PathBuf)>> {
     let name = path.file_name()?.to_str()?;
     let (first, last) = (name.find('#')?, name.rfind('#')?);
     let (prefix, suffix) = (&name[..first], &name[last + 1..]);
@@ -106,5 +118,13 @@ fn numbered(path: &Path) -> Option<Vec<PathBuf>> {
         })
         .collect();
     found.sort();
-    Some(found.into_iter().map(|(_, path)| path).collect())
+    Some(found)
+}
+
+/// The first number that is missing between those of `files`, whose distance is the smallest between two of them, and
+/// the file before it.
+fn gap(files: &[(u64, PathBuf)]) -> Option<(&Path, u64)> {
+    let step = files.windows(2).map(|pair| pair[1].0 - pair[0].0).min()?;
+    let pair = files.windows(2).find(|pair| pair[1].0 - pair[0].0 != step)?;
+    Some((&pair[0].1, pair[0].0 + step))
 }

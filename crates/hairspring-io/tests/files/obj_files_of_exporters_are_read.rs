@@ -162,6 +162,58 @@ fn polylines_are_strands() {
 }
 
 #[test]
+fn segments_in_any_order_and_direction_are_joined() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curves.obj");
+    let strands = "v 0 0 0\nv 0 0.1 0\nv 0 0.2 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0.1 0.2 0\nvt 0.5 0.25\n";
+    for lines in ["l 2 3\nl 5 6\nl 1/1 2\nl 4 5\n", "l 2 1/1\nl 5 4\nl 3 2\nl 5 6\n"] {
+        fs::write(&path, format!("{strands}{lines}")).unwrap();
+        let read = read_groom(&path, &ReadOptions { scale: Some(1.0), up: None }).unwrap();
+        assert_eq!(read.value.offsets, [0, 3, 6], "{lines}");
+        assert_eq!(read.value.points[..3], [Vec3::ZERO, Vec3::Y * 0.1, Vec3::Y * 0.2]);
+        assert_eq!(read.value.root_uvs, [glam::Vec2::new(0.5, 0.25), glam::Vec2::ZERO]);
+        assert!(read.notes.iter().any(|n| n.contains("joined to 2 strands")), "{:?}", read.notes);
+    }
+    // A branch is not joined.
+    fs::write(&path, format!("{strands}l 1 2\nl 2 3\nl 2 5\n")).unwrap();
+    assert_eq!(obj::parse_groom(&fs::read(&path).unwrap()).unwrap().strand_count(), 2);
+}
+
+#[test]
+fn numbered_meshes_have_the_unit_of_the_body_and_no_gaps() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    // Heights next to each other, for which different units would be guessed.
+    let heights = [29.0, 29.2, 29.4, 29.6];
+    let tetrahedron = |height: f32| {
+        format!("v 0 0 0\nv 10 0 0\nv 0 0 10\nv 0 {height} 0\nf 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n")
+    };
+    write("body.obj", &tetrahedron(heights[0]));
+    for (k, height) in heights.into_iter().enumerate() {
+        write(&format!("body.{}.obj", k + 7), &tetrahedron(height));
+    }
+    write("hair.csv", "strand,x,y,z\n0,0,0.3,0\n0,0,0.4,0\n0,0,0.5,0\n");
+    write(
+        "scene.toml",
+        "[body]\nfile = \"body.obj\"\nscale = 0.01\nvertex_cache = \"body.#.obj\"\n[[groom]]\nfile = \"hair.csv\"\nscale = 1\n",
+    );
+    let scene = folder.path().join("scene.toml");
+    let guessed = fs::read_to_string(&scene).unwrap().replace("scale = 0.01\n", "");
+    for text in [fs::read_to_string(&scene).unwrap(), guessed] {
+        let scene = hairspring_io::read_scene_text(&scene, &text).unwrap().value;
+        let unit = scene.body.unwrap().mesh.positions[3].y / heights[0];
+        let frames = scene.vertex_cache.unwrap().frames;
+        assert_eq!(frames.len(), heights.len());
+        for (frame, height) in frames.iter().zip(heights) {
+            assert!((frame[3].y - height * unit).abs() < 1e-5, "{} for {height}", frame[3].y);
+        }
+    }
+    fs::remove_file(folder.path().join("body.9.obj")).unwrap();
+    let error = hairspring_io::read_scene(&scene).unwrap_err().to_string();
+    assert!(error.contains("number 9 is missing after") && error.contains("body.8.obj"), "{error}");
+}
+
+#[test]
 fn a_file_without_faces_is_no_body() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("nothing.obj");

@@ -45,9 +45,9 @@ fn lists_and_numbers_of_points_name_strands() {
     assert_eq!(lists.radii, [0.00005, 0.00005, 0.0001, 0.00005, 0.00005]);
 
     let ids = ply::parse(PLY_IDS.as_bytes()).unwrap();
-    assert_eq!(ids.offsets, [0, 2, 4, 5]);
+    assert_eq!(ids.offsets, [0, 3, 5]);
     for name in ["strand", "hair_id"] {
-        assert_eq!(ply::parse(PLY_IDS.replace("strand_id", name).as_bytes()).unwrap().offsets, [0, 2, 4, 5]);
+        assert_eq!(ply::parse(PLY_IDS.replace("strand_id", name).as_bytes()).unwrap().offsets, [0, 3, 5]);
     }
     let polyline = PLY_LISTS.replace("element strand", "element polyline").replace("indices", "index");
     assert_eq!(ply::parse(polyline.as_bytes()).unwrap(), lists);

@@ -171,6 +171,6 @@ fn memory_is_proportional_to_the_file_and_its_end_is_a_sentence() {
     LARGEST.store(usize::MAX, Relaxed);
     for error in errors {
         let text = error.to_string();
-        assert!(text.contains("out of memory: the file needs") && !text.contains('\n'), "{text}");
+        assert!(text.contains("out of memory: ") && !text.contains('\n'), "{text}");
     }
 }

@@ -30,9 +30,9 @@ pub(super) fn simulation(
         .unwrap();
     simulation.set_hair_multiplicity(hair.iter().flat_map(StagedHair::hairs).collect());
     simulation.set_self_occlusion(colliders);
-    simulation.set_volume(&scene.volume);
-    simulation.set_wind_occlusion(&scene.wind_occlusion);
-    simulation.set_neighbours(&scene.neighbours);
+    simulation.set_volume(&scene.volume).expect("settings of a scene are in range");
+    simulation.set_wind_occlusion(&scene.wind_occlusion).expect("settings of a scene are in range");
+    simulation.set_neighbours(&scene.neighbours).expect("settings of a scene are in range");
     simulation
 }
 

@@ -45,8 +45,8 @@ pub(super) fn settle(hair: &mut [StagedHair], scene: &Scene, body: &StagedBody) 
     let anchor = body.pose().anchor();
     let mut simulation = join_grooms::simulation(hair, scene, solver, anchor, &body.keeping_poses());
     // Volume and strand contact would preserve the volume of hair that stands out.
-    simulation.set_volume(&Volume::default());
-    simulation.set_neighbours(&Neighbours::default());
+    simulation.set_volume(&Volume::default()).expect("settings of a scene are in range");
+    simulation.set_neighbours(&Neighbours::default()).expect("settings of a scene are in range");
     let roots: Vec<RigidTransform> = hair.iter().flat_map(|hair| hair.roots()).copied().collect();
     let mut colliders = body.colliders().to_vec();
     let motions: Vec<Motion> = initial_push::motions(hair, body);

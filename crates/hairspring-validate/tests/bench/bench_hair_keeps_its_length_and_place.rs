@@ -131,7 +131,7 @@ fn shaken(
         .colliders_at_rest(if alone { &[] } else { std::slice::from_ref(&rest) })
         .build()
         .unwrap();
-    simulation.set_volume(&Volume { method, ..Volume::default() });
+    simulation.set_volume(&Volume { method, ..Volume::default() }).unwrap();
     let mut before = at_rest;
     let (mut time, mut frame) = (0.0, 0);
     while time < VIOLENCE + FORGOTTEN {

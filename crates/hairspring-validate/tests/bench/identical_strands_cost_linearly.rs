@@ -25,7 +25,9 @@ fn fallen(bars: usize, strands: &[Vec<Vec3>], frames: usize) -> (NeighboursRepor
     let mut simulation =
         Simulation::builder(groom.clone()).materials(&[material]).solver(solver).build().unwrap();
     let radius = Some(0.001);
-    simulation.set_neighbours(&Neighbours { on: true, radius, friction: 0.0, ..Neighbours::default() });
+    simulation
+        .set_neighbours(&Neighbours { on: true, radius, friction: 0.0, ..Neighbours::default() })
+        .unwrap();
     let hold = |strand: usize, point: usize| Hold {
         strand: strand as u32,
         point: point as u32,

@@ -27,7 +27,7 @@ use std::sync::Arc;
 fn shaken(threads: usize, method: VolumeMethod) -> Vec<Vec3> {
     on_threads(threads, || {
         let mut bench = Bench::new(333, 20, Solver::default());
-        bench.simulation.set_volume(&Volume { method, ..Volume::default() });
+        bench.simulation.set_volume(&Volume { method, ..Volume::default() }).unwrap();
         (0..60).for_each(|_| _ = bench.step());
         points(&bench.simulation)
     })

@@ -82,7 +82,7 @@ fn opened(volume: Volume, pinch: f32) -> f32 {
         (0..side * side).map(|s| translation(groom.strand(s)[0] * pinched)).collect();
     let solver = Solver { collide_body: false, ..Solver::default() };
     let mut simulation = Simulation::builder(groom).solver(solver).build().unwrap();
-    simulation.set_volume(&volume);
+    simulation.set_volume(&volume).unwrap();
     simulation.place(REST, &roots);
     let spread = |simulation: &Simulation| {
         let now = points(simulation);
@@ -115,7 +115,7 @@ fn a_squeezed_bundle_expands() {
 /// The hair falls from standing out, and the head is shaken.
 fn kept(volume: Volume) -> f64 {
     let mut bench = Bench::new(1_500, 24, Solver::default());
-    bench.simulation.set_volume(&volume);
+    bench.simulation.set_volume(&volume).unwrap();
     let mut sum = 0.0;
     for frame in 0..180 {
         assert_eq!(bench.step().reset_strands, 0);

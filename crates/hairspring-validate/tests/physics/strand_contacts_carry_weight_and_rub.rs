@@ -40,7 +40,7 @@ impl Strands {
             .gravity(gravity)
             .build()
             .unwrap();
-        simulation.set_neighbours(&neighbours);
+        simulation.set_neighbours(&neighbours).unwrap();
         let roots = roots(&groom, REST);
         Self { groom, simulation, roots, colliders: Vec::new() }
     }
@@ -249,7 +249,7 @@ fn contacts_do_not_disturb_hair_at_rest() {
         let roots = roots(&groom, REST);
         let played = |neighbours: Neighbours| {
             let mut simulation = Simulation::builder(groom.clone()).build().unwrap();
-            simulation.set_neighbours(&neighbours);
+            simulation.set_neighbours(&neighbours).unwrap();
             step(&mut simulation, REST, &roots, &[]);
             let first = points(&simulation);
             (1..60).for_each(|_| _ = step(&mut simulation, REST, &roots, &[]));
@@ -269,7 +269,7 @@ fn contacts_do_not_disturb_hair_at_rest() {
 fn shaken(neighbours: Neighbours, threads: usize, frames: u32) -> (Vec<Vec3>, Bench) {
     on_threads(threads, || {
         let mut bench = Bench::new(150, 16, Solver::default());
-        bench.simulation.set_neighbours(&neighbours);
+        bench.simulation.set_neighbours(&neighbours).unwrap();
         (0..frames).for_each(|_| assert_eq!(bench.step().reset_strands, 0));
         (points(&bench.simulation), bench)
     })
@@ -337,8 +337,8 @@ fn strand_contact_keeps_volume_of_a_shaken_head() {
         Volume { method: VolumeMethod::Density, friction: 0.0, pressure: 0.0, ..Volume::default() };
     let kept = |volume: Volume, neighbours: Neighbours| {
         let mut bench = Bench::new(300, 20, Solver::default());
-        bench.simulation.set_volume(&volume);
-        bench.simulation.set_neighbours(&neighbours);
+        bench.simulation.set_volume(&volume).unwrap();
+        bench.simulation.set_neighbours(&neighbours).unwrap();
         let mut sum = 0.0;
         for frame in 0..180 {
             assert_eq!(bench.step().reset_strands, 0);
@@ -367,7 +367,7 @@ fn dropped_on_a_web(volume: VolumeMethod, on: bool) -> Vec3 {
     let fallen = line(Vec3::new(-0.06, 0.005, 0.0), Vec3::new(0.14, 0.005, 0.0), 21);
     let neighbours = Neighbours { on, radius: Some(0.001), ..Neighbours::default() };
     let mut strands = Strands::new(&web.chain([fallen]).collect::<Vec<_>>(), limp(), GRAVITY, neighbours);
-    strands.simulation.set_volume(&Volume { method: volume, ..Volume::default() });
+    strands.simulation.set_volume(&Volume { method: volume, ..Volume::default() }).unwrap();
     // The web is fixed at both of its sides.
     let held = |strand: u32| Hold {
         strand,

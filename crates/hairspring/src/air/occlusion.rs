@@ -36,8 +36,8 @@ define_settings! {
     /// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
     /// let occlusion = WindOcclusion { body: 1.0, ..Default::default() };
     /// assert!(occlusion.is_on());
-    /// simulation.set_wind_occlusion(&occlusion);
-    /// # Ok::<(), hairspring::simulation::BuildError>(())
+    /// simulation.set_wind_occlusion(&occlusion)?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     #[derive(Clone, Copy, Debug, PartialEq)]
     pub struct WindOcclusion {

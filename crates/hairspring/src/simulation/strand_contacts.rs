@@ -1,7 +1,7 @@
 //! Strand contact in the simulation: contacts between strands are solved between substeps.
 
 use super::Simulation;
-use crate::settings;
+use crate::settings::{self, OutOfRange, Validate};
 use crate::{
     simd::lanes::LANES,
     strand::{frame_context::FrameContext, tile::hold},
@@ -13,7 +13,11 @@ use std::collections::HashMap;
 impl Simulation {
     /// Enables or disables strand contact. The current pose counts as the rest pose, in which the contact
     /// radius of segments is limited by the available space.
-    pub fn set_neighbours(&mut self, settings: &settings::Neighbours) {
+    ///
+    /// # Errors
+    /// If a setting is out of range; then nothing changes.
+    pub fn set_neighbours(&mut self, settings: &settings::Neighbours) -> Result<(), OutOfRange> {
+        settings.validate()?;
         let mut hair = Hair::default();
         if settings.on {
             let mut known = HashMap::new();
@@ -30,6 +34,7 @@ impl Simulation {
             self.copy_points((1.0, self.state.anchor.matrix()), f32::INFINITY, &mut hair);
         }
         self.neighbours = Neighbours::new(settings, hair).map(Box::new);
+        Ok(())
     }
 
     /// Statistics of the strand contacts; `None` if they are disabled.

@@ -4,7 +4,7 @@ use super::Simulation;
 use crate::settings;
 use crate::{
     air::WindOcclusion,
-    settings::VolumeMethod,
+    settings::{OutOfRange, Validate, VolumeMethod},
     simd::lanes::{LANES, Row},
     strand::tile::rest,
     volume::{AtRest, Volume, VolumeReport},
@@ -17,7 +17,17 @@ const SHELTER_CELL: f32 = 1.0 / 32.0;
 impl Simulation {
     /// Enables or disables the hair volume. The current pose counts as the rest pose: it defines the rest
     /// density and each point's share of the volume.
-    pub fn set_volume(&mut self, settings: &settings::Volume) {
+    ///
+    /// # Errors
+    /// If a setting is out of range; then nothing changes.
+    pub fn set_volume(&mut self, settings: &settings::Volume) -> Result<(), OutOfRange> {
+        settings.validate()?;
+        self.replace_volume(settings);
+        Ok(())
+    }
+
+    /// The same with settings that are in range.
+    fn replace_volume(&mut self, settings: &settings::Volume) {
         let mut mass = vec![Row::default(); self.model.rest.len()];
         let (mut segments, mut sum, mut longest) = (0_usize, 0.0_f64, 0.0_f32);
         // A strand has the mass of the hairs that it represents. Only ratios between strands matter.
@@ -54,11 +64,16 @@ impl Simulation {
 
     /// Enables or disables wind occlusion by bodies and hair. If there is no hair volume, one is created for
     /// it, with the current pose as the rest pose that defines the density.
-    pub fn set_wind_occlusion(&mut self, occlusion: &WindOcclusion) {
+    ///
+    /// # Errors
+    /// If a setting is out of range; then nothing changes.
+    pub fn set_wind_occlusion(&mut self, occlusion: &WindOcclusion) -> Result<(), OutOfRange> {
+        occlusion.validate()?;
         self.wind_occlusion = *occlusion;
         if occlusion.is_on() && self.volume.is_none() {
-            self.set_volume(&settings::Volume::default());
+            self.replace_volume(&settings::Volume::default());
         }
+        Ok(())
     }
 
     /// Statistics of the hair volume; `None` if it exerts no forces.

@@ -71,7 +71,7 @@ fn outlines_lie_on_their_shapes() {
 #[test]
 fn lines_follow_from_the_state() {
     let (mut simulation, roots) = hair(Solver { sag_free: false, ..Solver::default() });
-    simulation.set_volume(&Volume { method: VolumeMethod::Density, ..Volume::default() });
+    simulation.set_volume(&Volume { method: VolumeMethod::Density, ..Volume::default() }).unwrap();
     let ball = ColliderShape::Sphere { center: Vec3::new(0.0, -0.1, 0.0), radius: 0.05 };
     let colliders = [MovingCollider::at_rest(ball, RigidTransform::default()).with_user_data(9)];
     let wind = Wind { velocity: Vec3::NEG_Z, ..Wind::default() };

@@ -9,7 +9,7 @@ use hairspring::{
     forces::{Manipulator, comb::Comb, grab::Grab, tie::Tie},
     material::Material,
     math::RigidTransform,
-    settings::{Neighbours, Solver, Volume, VolumeMethod, Wind},
+    settings::{Neighbours, OutOfRange, Solver, Volume, VolumeMethod, Wind},
     simulation::{DebugRenderMode, Simulation, StepError, StepInput},
 };
 use hairspring_test::{FRAME, points};
@@ -110,16 +110,54 @@ fn a_step_with_numbers_that_are_not_finite_does_not_panic() {
 }
 
 #[test]
-fn settings_out_of_range_do_not_panic() {
-    for value in BAD {
+fn settings_out_of_range_are_refused() {
+    let key = |result: Result<(), OutOfRange>| result.unwrap_err().key;
+    let (mut hair, _) = hair();
+    for value in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0] {
+        let volume = Volume { method: VolumeMethod::Density, ..Volume::default() };
+        for (wrong, name) in [
+            (Volume { cell: Some(value), ..volume }, "cell"),
+            (Volume { friction: value, ..volume }, "friction"),
+            (Volume { pressure: value, ..volume }, "pressure"),
+            (Volume { recovery_rate: value, ..volume }, "recovery_rate"),
+        ] {
+            assert_eq!(key(hair.set_volume(&wrong)), name, "{value}");
+        }
+        let neighbours = Neighbours { on: true, ..Neighbours::default() };
+        for (wrong, name) in [
+            (Neighbours { radius: Some(value), ..neighbours }, "radius"),
+            (Neighbours { friction: value, ..neighbours }, "friction"),
+            (Neighbours { stiction: value, ..neighbours }, "stiction"),
+        ] {
+            assert_eq!(key(hair.set_neighbours(&wrong)), name, "{value}");
+        }
+        let occlusion = WindOcclusion { body: value, ..WindOcclusion::default() };
+        assert_eq!(key(hair.set_wind_occlusion(&occlusion)), "body", "{value}");
+        // Nothing has changed.
+        assert!(hair.volume().is_none() && hair.neighbours().is_none());
+    }
+}
+
+#[test]
+fn extreme_settings_do_not_panic() {
+    for value in [0.0, 1e-30, 1e30] {
         for method in VolumeMethod::ALL {
             let (mut hair, roots) = hair();
-            let volume =
-                Volume { method, cell: Some(value), friction: value, pressure: value, recovery_rate: value };
-            hair.set_volume(&volume);
-            let radius = Some(value);
-            hair.set_neighbours(&Neighbours { on: true, radius, friction: value, stiction: value });
-            hair.set_wind_occlusion(&WindOcclusion { body: value, hair: value, reach: value });
+            let volume = Volume {
+                method,
+                friction: value,
+                pressure: value,
+                recovery_rate: value,
+                ..Volume::default()
+            };
+            hair.set_volume(&volume).unwrap();
+            let cell = Some(value).filter(|cell| *cell > 0.0);
+            hair.set_volume(&Volume { cell, ..volume }).unwrap();
+            let neighbours =
+                Neighbours { on: true, friction: value, stiction: value, ..Neighbours::default() };
+            hair.set_neighbours(&Neighbours { radius: cell, ..neighbours }).unwrap();
+            let reach = value.max(1e-30);
+            hair.set_wind_occlusion(&WindOcclusion { body: value, hair: value, reach }).unwrap();
             let wind = Wind { velocity: Vec3::X, ..Wind::default() };
             let air = Air { wind, ..Air::default() };
             let anchor = RigidTransform::default();

@@ -51,11 +51,11 @@ fn with_every_model_and_integrator() {
 fn with_volume_and_strand_contact() {
     for method in [VolumeMethod::Density, VolumeMethod::Incompressible] {
         let mut hair = simulation(20, Material::default(), Solver::default());
-        hair.set_volume(&Volume { method, ..Volume::default() });
+        hair.set_volume(&Volume { method, ..Volume::default() }).unwrap();
         assert_repeats(&format!("{method:?}"), hair);
     }
     let mut hair = simulation(20, Material::default(), Solver::default());
-    hair.set_neighbours(&Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() });
+    hair.set_neighbours(&Neighbours { on: true, stiction: 1e-6, ..Neighbours::default() }).unwrap();
     assert_repeats("strand contact", hair);
 }
 

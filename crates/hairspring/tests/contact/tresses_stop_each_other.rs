@@ -38,8 +38,8 @@ impl Interaction {
     }
 
     fn set(&self, simulation: &mut Simulation) {
-        simulation.set_volume(&Volume { method: self.method, cell: self.cell, ..Volume::default() });
-        simulation.set_neighbours(&Neighbours { on: self.neighbours, ..Neighbours::default() });
+        simulation.set_volume(&Volume { method: self.method, cell: self.cell, ..Volume::default() }).unwrap();
+        simulation.set_neighbours(&Neighbours { on: self.neighbours, ..Neighbours::default() }).unwrap();
     }
 }
 

@@ -54,7 +54,7 @@ impl Head {
             .colliders_at_rest(&[MovingCollider::at_rest(ball(), REST).end_pose()])
             .build()
             .unwrap();
-        simulation.set_volume(&Volume { method: volume, ..Volume::default() });
+        simulation.set_volume(&Volume { method: volume, ..Volume::default() }).unwrap();
         Self { groom, simulation, pose: REST }
     }
 

@@ -84,7 +84,7 @@ fn blown(
 ) -> Vec<Vec3> {
     let poses: Vec<ColliderPose> = colliders.iter().map(MovingCollider::end_pose).collect();
     let mut simulation = Simulation::builder(groom.clone()).colliders_at_rest(&poses).build().unwrap();
-    simulation.set_wind_occlusion(occlusion);
+    simulation.set_wind_occlusion(occlusion).unwrap();
     let roots = roots(groom, REST);
     for frame in 0..frames {
         let air = Air { time: frame as f64 / 60.0, ..air };
