@@ -257,11 +257,13 @@ class Simulation:
     def velocities(self) -> _Floats: ...
 
 def run_command(arguments: Sequence[str]) -> int: ...
+def scene_inputs(path: _Path) -> list[tuple[str, str]]: ...
 def scene_with(path: _Path, folder: _Path, values: Sequence[tuple[str, str]]) -> str: ...
 
 __all__ = [
     "Collider",
     "run_command",
+    "scene_inputs",
     "scene_with",
     "FileError",
     "HairspringError",

@@ -8,8 +8,10 @@ import itertools
 import json
 import os
 import re
+import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -22,6 +24,10 @@ HELP = """examples:
 
 Each variant is a folder with its scene, its log, the clip and the bake. `table.csv` and `sheet.png` show all of them.
 The command can be interrupted and run again: variants that are complete are kept."""
+
+
+class UsageError(Exception):
+    """Wrong arguments: one sentence."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +71,7 @@ def values_of(text: str) -> tuple[str, list[str]]:
     """The key and the values of `--set`."""
     key, equals, values = text.partition("=")
     if not equals or not key or not values:
-        raise SystemExit(f"hairspring wedge: --set {text}: expected KEY=VALUE,VALUE, such as solver.substeps=2,4,8")
+        raise UsageError(f"--set {text}: expected KEY=VALUE,VALUE, such as solver.substeps=2,4,8")
     separator = ";" if ";" in values or "[" in values else ","
     return key.strip(), [v.strip() for v in values.split(separator)]
 
@@ -103,19 +109,70 @@ def toml_value(text: str) -> str:
     return text if plain else json.dumps(text)
 
 
+class Children:
+    """The programs that run, so that an interrupt can end them."""
+
+    def __init__(self) -> None:
+        self.lock = threading.Lock()
+        self.running: set[subprocess.Popen[str]] = set()
+        self.ended = False
+
+    def run(self, command: list[str]) -> tuple[int, str, str]:
+        """Runs a program; returns its exit code, output and errors."""
+        with self.lock:
+            if self.ended:
+                return 130, "", "interrupted"
+            child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+            self.running.add(child)
+        try:
+            output, errors = child.communicate()
+        finally:
+            with self.lock:
+                self.running.discard(child)
+        return child.returncode, output, errors
+
+    def end(self) -> None:
+        """Stops all programs, which remove their unfinished files, and starts no more."""
+        with self.lock:
+            self.ended = True
+            for child in self.running:
+                child.terminate()
+
+
+CHILDREN = Children()
+
+
+def key_of(task: dict, scene: Path) -> str:
+    """Identifies everything that the results of a task depend on: options, version, the scene and the files that it names."""
+    from . import _native
+
+    parts = [task["text"], task["frames"], task["fps"], task["size"], task["bake"], _native.__version__]
+    return hashlib.sha256(json.dumps([*parts, _native.scene_inputs(scene)]).encode()).hexdigest()
+
+
 def run_variant(task: dict) -> dict:
     """Simulates one variant in its folder. Runs here or on another machine, which has the same files."""
+    from . import HairspringError
+
     folder = Path(task["folder"])
     folder.mkdir(parents=True, exist_ok=True)
     scene, done = folder / "scene.toml", folder / "done.json"
     scene.write_text(task["text"])
+    try:
+        key = key_of(task, scene)
+    except HairspringError as error:
+        return {"error": str(error), "code": 4}
     if done.exists():
         try:
             before = json.loads(done.read_text())
         except ValueError:
             before = {}
-        if before.get("key") == task["key"]:
+        if before.get("key") == key:
             return before | {"kept": True}
+    # A bake that was interrupted continues, unless something has changed since.
+    started = folder / "started.txt"
+    resume = ["--resume"] if started.exists() and started.read_text() == key else []
+    started.write_text(key)
     program = [sys.executable, "-m", "hairspring", "--quiet"]
     frames = ["--frames", task["frames"]] if task["frames"] else []
     commands = [
@@ -124,18 +181,19 @@ def run_variant(task: dict) -> dict:
     ]
     if task["bake"]:
         name = "hair.####.hair" if task["bake"] == "hair" else f"hair.{task['bake']}"
-        commands.append(["bake", str(scene), "-o", str(folder / name), "--fps", task["fps"], *frames, "--resume"])
+        commands.append(["bake", str(scene), "-o", str(folder / name), "--fps", task["fps"], *frames, *resume])
     began, result = time.time(), {}
     with open(folder / "log.txt", "a") as log:
         for command in commands:
-            ran = subprocess.run([*program, *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            log.write(f"$ hairspring {' '.join(command)}\n{ran.stdout}{ran.stderr}")
-            if ran.returncode:
-                lines = ran.stderr.strip().splitlines() or [f"exit code {ran.returncode}"]
-                return {"key": task["key"], "error": lines[-1], "code": ran.returncode}
+            code, output, errors = CHILDREN.run([*program, *command])
+            log.write(f"$ hairspring {' '.join(command)}\n{output}{errors}")
+            if code:
+                lines = errors.strip().splitlines() or [f"exit code {code}"]
+                sentence = next((line.removeprefix("error: ") for line in lines if line.startswith("error: ")), lines[-1])
+                return {"error": sentence, "code": code}
             if "--json" in command:
-                result = json.loads(ran.stdout)
-    result |= {"key": task["key"], "seconds": round(time.time() - began, 2)}
+                result = json.loads(output)
+    result |= {"key": key, "seconds": round(time.time() - began, 2)}
     pending = folder / ".done.json"
     pending.write_text(json.dumps(result))
     os.replace(pending, done)
@@ -149,10 +207,8 @@ def tasks(options: argparse.Namespace, found: list[Variant]) -> list[dict]:
     for variant in found:
         folder = (options.output / variant.name).resolve()
         text = scene_text(variant, folder)
-        rest = [options.frames, options.fps, options.size, options.bake]
-        key = hashlib.sha256(json.dumps([text, *rest]).encode()).hexdigest()
         out.append(
-            {"name": variant.name, "folder": str(folder), "text": text, "key": key, "frames": options.frames, "fps": options.fps}
+            {"name": variant.name, "folder": str(folder), "text": text, "frames": options.frames, "fps": options.fps}
             | {"size": options.size, "bake": options.bake, "still": still}
         )
     return out
@@ -176,6 +232,7 @@ def run_here(all_tasks: list[dict], jobs: int, retries: int, report) -> None:
                 report(waiting[future], future.result())
         except KeyboardInterrupt:
             pool.shutdown(wait=False, cancel_futures=True)
+            CHILDREN.end()
             raise
 
 
@@ -205,6 +262,8 @@ def write_table(path: Path, found: list[Variant], results: dict[str, dict]) -> N
         rows.writerow(["variant", "scene", "clip", *keys, *measured])
         for v in found:
             result = results.get(v.name, {})
+            result = result | {"simulate_ms": result.get("ms_per_frame", {}).get("simulate", "")}
+            result["simulated"] = result.get("simulated_strands", "")
             values = dict(v.values)
             cells = [values.get(k, "") for k in keys] + [result.get(m, "") for m in measured]
             rows.writerow([v.name, v.scene.name, v.clip.name if v.clip else "", *cells])
@@ -216,12 +275,22 @@ def main(arguments: list[str]) -> int:
     from . import HairspringError
     from .sheet import write_sheet
 
-    found = variants(options)
+    def refuse(sentence: object, code: int) -> int:
+        print(f"hairspring wedge: {sentence}", file=sys.stderr)
+        return code
+
+    for scene in options.scenes:
+        if not scene.exists():
+            return refuse(f"{scene} was not found", 3)
+    if options.output.exists() and not options.output.is_dir():
+        return refuse(f"{options.output} is a file; name a folder with -o", 2)
     try:
+        found = variants(options)
         todo = tasks(options, found)
+    except UsageError as error:
+        return refuse(error, 2)
     except HairspringError as error:
-        print(f"hairspring wedge: {error}", file=sys.stderr)
-        return 4
+        return refuse(error, 4)
     options.output.mkdir(parents=True, exist_ok=True)
     results: dict[str, dict] = {}
 
@@ -230,6 +299,12 @@ def main(arguments: list[str]) -> int:
         state = result.get("error") or ("kept" if result.get("kept") else f"{result['seconds']} s")
         print(f"{len(results)}/{len(todo)} {task['name']}: {state}", file=sys.stderr, flush=True)
 
+    def stop(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), stop)
     interrupted = False
     try:
         if options.ray:

@@ -146,6 +146,11 @@ impl Origin {
 pub struct Inputs(BTreeMap<String, Checksum>);
 
 impl Inputs {
+    /// The names of the files and their SHA-256 in hexadecimal.
+    pub fn checksums(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.0.iter().map(|(name, checksum)| (name.as_str(), checksum.sha256.as_str()))
+    }
+
     /// Names of files that both have read with different content.
     #[must_use]
     pub fn changed(&self, other: &Self) -> Vec<String> {

@@ -1,6 +1,7 @@
 //! The program `hairspring` inside of the package.
 
-use crate::errors::setting;
+use crate::errors::{file, setting};
+use hairspring_io::{Inputs, read_scene};
 use pyo3::prelude::*;
 use std::{ffi::OsString, path::PathBuf};
 
@@ -14,4 +15,12 @@ pub fn run_command(py: Python<'_>, arguments: Vec<OsString>) -> u8 {
 #[pyfunction]
 pub fn scene_with(path: PathBuf, folder: PathBuf, values: Vec<(String, String)>) -> PyResult<String> {
     hairspring_cli::scene_with(&path, &folder, &values).map_err(setting)
+}
+
+/// Returns the names and the SHA-256 of the scene file `path` and of all files that it names.
+#[pyfunction]
+pub fn scene_inputs(py: Python<'_>, path: PathBuf) -> PyResult<Vec<(String, String)>> {
+    let (scene, inputs) = py.detach(|| Inputs::record(&path, || read_scene(&path)));
+    scene.map_err(file)?;
+    Ok(inputs.checksums().map(|(name, checksum)| (name.to_owned(), checksum.to_owned())).collect())
 }

@@ -26,7 +26,7 @@ mod _native {
     #[pymodule_export]
     use super::{
         collider::Collider,
-        command::{run_command, scene_with},
+        command::{run_command, scene_inputs, scene_with},
         errors::{FileError, HairspringError, SettingError},
         field::SignedDistanceField,
         groom::Groom,

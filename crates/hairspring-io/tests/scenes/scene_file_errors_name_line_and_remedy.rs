@@ -72,9 +72,9 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         ("[groom]\nfile = \"hair.data\"\n".into(), &["line 1", "write [[groom]], with two brackets"]),
         (
             format!("{GROOM}[collider]\nshape.sphere = {{ center = [0, 0, 0], radius = 1 }}\n"),
-            &["line 4", "write [[collider]], with two brackets"],
+            &["line 3", "write [[collider]], with two brackets"],
         ),
-        (format!("{GROOM}[[wind]]\nvelocity = [1, 0, 0]\n"), &["line 4", "write [wind], with one bracket"]),
+        (format!("{GROOM}[[wind]]\nvelocity = [1, 0, 0]\n"), &["line 3", "write [wind], with one bracket"]),
         (format!("[[body]]\nfile = \"head.obj\"\n{GROOM}"), &["line 1", "write [body], with one bracket"]),
         (
             "[[groom]]\nfile = \"hiar.data\"\n".into(),
