@@ -134,7 +134,8 @@ fn reworded(message: &str, key: Option<&str>) -> String {
     }
     let field = key.map_or("the value".into(), |key| format!("`{key}`"));
     if message.starts_with("wanted exactly 1 element") {
-        return "the table has more than one kind or none; give one, such as one shape in each [[collider]]".into();
+        return "the table has more than one kind or none; give one, such as one shape in each [[collider]]"
+            .into();
     }
     if message == "wanted string or table" {
         return format!("{field} needs a name in quotes");
