@@ -127,15 +127,14 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
             Some("vt") => uvs.push(texture_coordinate(&mut words, line_number)?),
             Some("f") => faces += 1,
             Some("l") => {
-                let mut corners = words.map(|word| corner_of(word, vertices.len(), uvs.len(), line_number));
-                let Some(root) = corners.next().transpose()? else { continue };
-                let mut rest = corners.peekable();
-                if rest.peek().is_none() {
-                    continue;
-                }
+                let mut rest = words.map(|word| corner_of(word, vertices.len(), uvs.len(), line_number));
+                let Some(root) = rest.next().transpose()? else { continue };
+                let Some(first) = rest.next() else { continue };
                 lines.begin(root);
+                lines.push(first?);
                 for corner in rest {
                     lines.push(corner?);
+                    lines.has_polylines = true;
                 }
                 if u32::try_from(lines.order.len()).is_err() {
                     return Err(Problem::limit(Place::Line(line_number), "more than 4 billion points"));
@@ -177,6 +176,8 @@ struct Polylines {
     offsets: Vec<u32>,
     /// Vertices with texture coordinates, and those.
     uvs: Vec<[u32; 2]>,
+    /// Whether a line has more than two vertices.
+    has_polylines: bool,
 }
 
 impl Polylines {
@@ -186,10 +187,7 @@ impl Polylines {
         if self.offsets.is_empty() {
             self.offsets.push(0);
         }
-        if self.order.last() == Some(&corner.0) {
-            self.offsets.pop();
-            self.offsets.push(self.order.len() as u32);
-        } else {
+        if self.order.last() != Some(&corner.0) {
             self.offsets.push(self.order.len() as u32);
             self.push(corner);
         }
@@ -204,10 +202,13 @@ impl Polylines {
         }
     }
 
-    /// Joins polylines that share an end, such as segments in any order and direction. Returns a note if there are
-    /// any. Vertices with more than two segments stay as they are.
+    /// Joins segments that share an end, in any order and direction, if the file has nothing but segments. Returns a
+    /// note if there are any. With a vertex of more than two segments, nothing is joined.
     fn join(&mut self) -> Option<String> {
         self.uvs.sort_unstable();
+        if self.has_polylines {
+            return None;
+        }
         let mut vertices = self.order.clone();
         vertices.sort_unstable();
         vertices.windows(2).find(|pair| pair[0] == pair[1])?;

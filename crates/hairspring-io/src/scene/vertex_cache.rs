@@ -124,7 +124,8 @@ fn numbered(path: &Path) -> Option<Vec<(u64, PathBuf)>> {
 /// The first number that is missing between those of `files`, whose distance is the smallest between two of them, and
 /// the file before it.
 fn gap(files: &[(u64, PathBuf)]) -> Option<(&Path, u64)> {
-    let step = files.windows(2).map(|pair| pair[1].0 - pair[0].0).min()?;
-    let pair = files.windows(2).find(|pair| pair[1].0 - pair[0].0 != step)?;
+    let distances = files.windows(2).map(|pair| pair[1].0 - pair[0].0);
+    let step = distances.filter(|distance| *distance > 0).min()?;
+    let pair = files.windows(2).find(|pair| pair[1].0 - pair[0].0 > step)?;
     Some((&pair[0].1, pair[0].0 + step))
 }

@@ -174,6 +174,9 @@ fn segments_in_any_order_and_direction_are_joined() {
         assert_eq!(read.value.root_uvs, [glam::Vec2::new(0.5, 0.25), glam::Vec2::ZERO]);
         assert!(read.notes.iter().any(|n| n.contains("joined to 2 strands")), "{:?}", read.notes);
     }
+    // Strands may share a root.
+    fs::write(&path, format!("{strands}l 1 2 3\nl 1 4 5\n")).unwrap();
+    assert_eq!(obj::parse_groom(&fs::read(&path).unwrap()).unwrap().offsets, [0, 3, 6]);
     // A branch is not joined.
     fs::write(&path, format!("{strands}l 1 2\nl 2 3\nl 2 5\n")).unwrap();
     assert_eq!(obj::parse_groom(&fs::read(&path).unwrap()).unwrap().strand_count(), 2);
