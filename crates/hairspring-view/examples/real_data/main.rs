@@ -59,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{CONTACT}");
         for path in &arguments.scenes {
             let scene = read(path)?;
-            let name = scene.name.clone();
+            let name = label(&scene, path);
             let (played, stage) = play(scene)?;
             println!("| {name} | {} |", played.contact(&stage));
         }
@@ -71,7 +71,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("| --- | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: | --: |");
     for path in &arguments.scenes {
         let scene = read(path)?;
-        let name = scene.name.clone();
+        let name = label(&scene, path);
         let (played, mut stage) = play(scene.clone())?;
         println!("| {name} | {} | {:.4} |", played.row(&stage), at_rest(scene)? * 1e3);
         if let Some(folder) = &arguments.pictures {
@@ -207,6 +207,11 @@ fn play(scene: Scene) -> Result<(Played, Stage), StageError> {
         played.frames.push(times.map(|t| t.as_secs_f64() * 1e3));
     }
     Ok((played, stage))
+}
+
+/// The first cell of a row: the name of the scene and that of its file.
+fn label(scene: &Scene, path: &Path) -> String {
+    format!("{} (`{}`)", scene.name, path.file_stem().unwrap_or_default().to_string_lossy())
 }
 
 /// How far the mean point moves from where it was authored in a second in which nothing moves [m].
