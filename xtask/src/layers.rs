@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn tests_and_modules_of_ones_own_make_none() {
+    fn tests_and_child_modules_add_no_edges_to_the_graph() {
         let found = found(&[
             ("lib.rs", "mod a; mod b;"),
             ("a/mod.rs", "mod c; use crate::b::Y; use self::c::Z;"),

@@ -179,7 +179,7 @@ fn frame(entry: &Table) -> Result<i64, String> {
 #[cfg(test)]
 mod tests {
     #[test]
-    fn a_change_goes_where_its_name_says() {
+    fn a_change_is_written_to_every_table_of_its_name() {
         let mut scene =
             "[[groom]]\nguides = 1\n[[groom]]\n[material.a]\npreset = \"wavy\"\n".parse().unwrap();
         for (name, value) in [("groom.look.shadow", 2.0), ("material.bend", 3.0), ("wind.gust", 0.5)] {

@@ -24,8 +24,8 @@ const COLORS: [Color32; 3] =
 
 /// Draws the frames. `picked` lists groom and index of strands whose frames are drawn along their whole
 /// length.
-pub fn draw(pen: &OverlayPainter, scenery: &StageSnapshot, picked: &[[usize; 2]]) {
-    let (m, at) = scenery.anchor.matrix();
+pub fn draw(pen: &OverlayPainter, stage: &StageSnapshot, picked: &[[usize; 2]]) {
+    let (m, at) = stage.anchor.matrix();
     frame(pen, at, m, LONG, 2.0);
     for (axis, name) in [(m.x_axis, "x"), (m.y_axis, "y"), (m.z_axis, "z")] {
         if let Some(tip) = pen.at(at + axis * LONG) {
@@ -33,28 +33,28 @@ pub fn draw(pen: &OverlayPainter, scenery: &StageSnapshot, picked: &[[usize; 2]]
         }
     }
     // All grooms use the same stride, so a groom of few hairs, such as brows, has few frames.
-    let every = 1 + scenery.still.counts[1] / ROOTS;
-    for (g, (still, points)) in scenery.still.grooms.iter().zip(scenery.points()).enumerate() {
+    let every = 1 + stage.still.counts[1] / ROOTS;
+    for (g, (still, points)) in stage.still.grooms.iter().zip(stage.points()).enumerate() {
         for strand in (0..still.strand_count()).step_by(every) {
             if let Some(root) = points.get(still.strand(strand).start) {
-                frame(pen, *root, scenery.root_frame(g, strand), SHORT, 1.5);
+                frame(pen, *root, stage.root_frame(g, strand), SHORT, 1.5);
             }
         }
     }
     for &[groom, strand] in picked {
-        let Some((still, points)) = scenery.still.grooms.get(groom).zip(scenery.points().nth(groom)) else {
+        let Some((still, points)) = stage.still.grooms.get(groom).zip(stage.points().nth(groom)) else {
             continue;
         };
         if let Some(points) = points.get(still.strand(strand)) {
-            along(pen, points, scenery.root_frame(groom, strand));
+            along(pen, points, stage.root_frame(groom, strand));
         }
     }
-    let told = "red x, green y (along hair; out of the skin), blue z";
+    let legend = "red x, green y (along hair; out of the skin), blue z";
     let place = pen.rect.center_top() + vec2(0.0, 10.0);
     pen.painter.text(
         place,
         Align2::CENTER_TOP,
-        told,
+        legend,
         FontId::proportional(13.0),
         Color32::from_white_alpha(220),
     );

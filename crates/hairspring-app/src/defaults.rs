@@ -20,39 +20,39 @@ pub struct Reference {
 }
 
 impl Reference {
-    /// Creates the reference for the scene `said` in its current state. Later changes are compared with it.
-    pub fn opened(path: &Path, said: &Table) -> Self {
-        Self::new(path, said, said.clone())
+    /// Creates the reference for the scene in its current state. Later changes are compared with it.
+    pub fn opened(path: &Path, parsed: &Table) -> Self {
+        Self::new(path, parsed, parsed.clone())
     }
 
     /// Creates the reference for a scene that specifies only the sources of its hair, body and motion.
-    pub fn library(path: &Path, said: &Table) -> Self {
-        Self::new(path, said, bare(said))
+    pub fn library(path: &Path, parsed: &Table) -> Self {
+        Self::new(path, parsed, bare(parsed))
     }
 
-    fn new(path: &Path, said: &Table, mut from: Table) -> Self {
+    fn new(path: &Path, parsed: &Table, mut from: Table) -> Self {
         LISTS.iter().for_each(|list| drop(from.remove(*list)));
         let mut reference = Self { from, text: Table::new(), values: Table::new() };
-        reference.follow(path, said);
+        reference.follow(path, parsed);
         reference
     }
 
     /// Adopts the current style and presets of the scene.
-    pub fn follow(&mut self, path: &Path, said: &Table) {
+    pub fn follow(&mut self, path: &Path, parsed: &Table) {
         let mut named = self.from.clone();
-        take_over(named.get_mut("builtin"), said.get("builtin"), "style");
+        take_over(named.get_mut("builtin"), parsed.get("builtin"), "style");
         let mut text = named.clone();
-        take_over(text.get_mut("builtin"), said.get("builtin"), "material");
+        take_over(text.get_mut("builtin"), parsed.get("builtin"), "material");
         let grooms = text.get_mut("groom").and_then(Value::as_array_mut);
-        for (groom, said) in grooms.into_iter().flatten().zip(entries(said, "groom")) {
-            take_over(Some(groom), Some(said), "material");
+        for (groom, entry) in grooms.into_iter().flatten().zip(entries(parsed, "groom")) {
+            take_over(Some(groom), Some(entry), "material");
         }
         let before = text.remove("material");
-        let materials = said.get("material").and_then(Value::as_table).into_iter().flatten();
-        let materials = materials.map(|(name, said)| {
+        let materials = parsed.get("material").and_then(Value::as_table).into_iter().flatten();
+        let materials = materials.map(|(name, entry)| {
             let mut material =
                 before.as_ref().and_then(|m| m.get(name)).cloned().unwrap_or(Table::new().into());
-            take_over(Some(&mut material), Some(said), "preset");
+            take_over(Some(&mut material), Some(entry), "preset");
             (name.clone(), material)
         });
         text.insert("material".into(), Value::Table(materials.collect()));
@@ -79,15 +79,15 @@ impl Reference {
     }
 
     /// The text of the reference scene.
-    pub fn said(&self) -> &Table {
+    pub fn parsed_text(&self) -> &Table {
         &self.from
     }
 }
 
-/// Copies the value of `name` from `said`, or removes it if `said` does not have it.
-fn take_over(table: Option<&mut Value>, said: Option<&Value>, name: &str) {
+/// Copies the value of `name` from `source`, or removes it if `source` does not have it.
+fn take_over(table: Option<&mut Value>, source: Option<&Value>, name: &str) {
     if let Some(table) = table.and_then(Value::as_table_mut) {
-        match said.and_then(|said| said.get(name)) {
+        match source.and_then(|source| source.get(name)) {
             Some(value) => drop(table.insert(name.into(), value.clone())),
             None => drop(table.remove(name)),
         }
@@ -95,7 +95,7 @@ fn take_over(table: Option<&mut Value>, said: Option<&Value>, name: &str) {
 }
 
 /// Reduces a scene to the sources of its hair, body and motion.
-fn bare(said: &Table) -> Table {
+fn bare(parsed: &Table) -> Table {
     let only = |value: &Value, names: &[&str]| -> Value {
         let table = names.iter().filter_map(|name| Some(((*name).to_owned(), value.get(name)?.clone())));
         Value::Table(table.collect())
@@ -104,11 +104,11 @@ fn bare(said: &Table) -> Table {
     for (name, fields) in
         [("builtin", &[][..]), ("body", &["file"][..]), ("clip", &["file", "keys", "joint", "pivot"][..])]
     {
-        if let Some(value) = said.get(name) {
+        if let Some(value) = parsed.get(name) {
             out.insert(name.into(), only(value, fields));
         }
     }
-    let grooms = entries(said, "groom").iter().map(|groom| {
+    let grooms = entries(parsed, "groom").iter().map(|groom| {
         let mut bare = only(groom, &["file"]);
         if let (Some(table), Some(_)) = (bare.as_table_mut(), groom.get("grow")) {
             table.insert("grow".into(), Table::new().into());
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn defaults_are_those_of_the_style_and_the_preset_that_are_chosen() {
+    fn defaults_follow_the_chosen_style_and_preset() {
         let text = "[builtin]\nstyle = \"curly\"\n[builtin.look]\nroughness = 0.5\n";
         let mut document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
         assert_eq!(document.opened().values(), document.effective());

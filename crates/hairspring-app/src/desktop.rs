@@ -23,10 +23,10 @@ const LIBRARIES: &[(&str, &str)] = if cfg!(target_os = "linux") {
 
 /// Returns the message for a window that could not be opened for this reason.
 pub fn sentence(why: &str) -> String {
-    said(why, &missing(LIBRARIES))
+    message_of(why, &missing(LIBRARIES))
 }
 
-fn said(why: &str, missing: &[&(&str, &str)]) -> String {
+fn message_of(why: &str, missing: &[&(&str, &str)]) -> String {
     let why = plain(why);
     let (names, packages): (Vec<&str>, Vec<&str>) = missing.iter().copied().copied().unzip();
     match names[..] {
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_missing_library_is_a_sentence() {
+    fn a_missing_library_is_reported_as_an_error() {
         let missing = without_library(|| panic!("Library libxkbcommon-x11.so could not be loaded."));
         assert_eq!(missing, Err::<(), _>("Library libxkbcommon-x11.so could not be loaded.".into()));
         assert_eq!(without_library(|| 3), Ok(3));
@@ -94,15 +94,15 @@ mod tests {
 
     #[test]
     #[cfg(target_os = "linux")]
-    fn what_is_missing_is_named_with_its_package_and_no_place_in_a_source() {
+    fn missing_libraries_are_reported_with_their_package_and_without_a_source_location() {
         let libraries = [("libc.so.6", "libc6"), ("libnosuch.so.9", "libnosuch9")];
         let missing = missing(&libraries);
         assert_eq!(missing, [&("libnosuch.so.9", "libnosuch9")]);
         let why = "winit EventLoopError: os error at /home/a/winit/linux/mod.rs:788: Failed to load one of xlib's shared libraries";
         assert_eq!(
-            said(why, &missing),
+            message_of(why, &missing),
             "no window could be opened: Failed to load one of xlib's shared libraries; not found: libnosuch.so.9 (on Debian: apt install libnosuch9)"
         );
-        assert_eq!(said("no seat.", &[]), "no window could be opened: no seat");
+        assert_eq!(message_of("no seat.", &[]), "no window could be opened: no seat");
     }
 }

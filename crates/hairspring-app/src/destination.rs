@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_folder_is_named_as_it_is_and_missing_ones_are_said() {
+    fn paths_are_resolved_and_missing_folders_are_reported() {
         let folder = tempfile::tempdir().unwrap();
         let inner = folder.path().join("a");
         std::fs::create_dir(&inner).unwrap();

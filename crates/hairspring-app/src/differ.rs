@@ -65,8 +65,8 @@ pub fn scene_differences(
     texts: [&str; 2],
 ) -> Result<Vec<Difference>, AppError> {
     let parse = |text: &str| text.parse::<toml::Table>().map_err(|why| AppError::new(why.to_string()));
-    let said = [parse(texts[0])?, parse(texts[1])?];
-    let effective = [0, 1].map(|k| effective(scenes[k], &said[k]));
+    let parsed = [parse(texts[0])?, parse(texts[1])?];
+    let effective = [0, 1].map(|k| effective(scenes[k], &parsed[k]));
     let mut found = between(&effective[0], &effective[1]);
     // Files, props and motions are not settings. Of the texts, only what has no effective value counts.
     let known = |key: &str| {
@@ -76,7 +76,7 @@ pub fn scene_differences(
         covered.contains(&first) || key.is_some_and(|k| effective.iter().any(|t| k.look_up(t).is_some()))
     };
     found.retain(|d| d.key != "name");
-    found.extend(between(&said[0], &said[1]).into_iter().filter(|d| !known(&d.key)));
+    found.extend(between(&parsed[0], &parsed[1]).into_iter().filter(|d| !known(&d.key)));
     Ok(found)
 }
 
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn what_differs_is_named_on_its_side() {
+    fn captions_name_each_difference_on_its_side() {
         let [left, right] =
             named("solver.integrator = \"bdf2\"\nx = 1", "solver.integrator = \"verlet\"\nx = 1");
         assert_eq!((left.as_str(), right.as_str()), ("Integrator: bdf2", "Integrator: verlet"));

@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn far_from_all_it_shows_its_back_and_lies_across_up() {
+    fn a_hand_away_from_the_body_shows_its_back_and_points_sideways() {
         let hand = Pushing::new(push(Vec3::Z), None).pulled.now;
         assert!((hand.rotation * Vec3::Z).distance(Vec3::Z) < 1e-6, "its back is seen");
         assert!((hand.rotation * Vec3::Y).distance(Vec3::X) < 1e-6, "fingers to the right");
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn it_goes_around_a_head_with_its_palm_to_it_and_no_faster_than_it_may() {
+    fn a_hand_moves_around_a_head_with_its_palm_toward_it_and_limited_speed() {
         let head = head();
         let mut pushing = Pushing::new(push(Vec3::new(0.0, 0.0, 0.12)), Some(posed(&head)));
         // Straight through the head, from its front to beyond its side, in one move.
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn its_fingers_turn_across_the_stroke() {
+    fn the_fingers_of_a_hand_turn_across_the_stroke() {
         for (way, along) in
             [(Vec3::NEG_Y, Vec3::X), (Vec3::X, Vec3::Y), (Vec3::new(1.0, -1.0, 0.0), Vec3::ONE)]
         {

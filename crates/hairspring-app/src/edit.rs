@@ -24,7 +24,8 @@ pub fn of(
             let pigment = value.is_some();
             let colors = ["root_color", "tip_color"].map(|name| {
                 let color = key.sibling(name);
-                let first = color.look_up(document.opened().said()).filter(|_| !pigment).and_then(written);
+                let first =
+                    color.look_up(document.opened().parsed_text()).filter(|_| !pigment).and_then(written);
                 (color, first)
             });
             std::iter::once((key, value)).chain(colors).collect()
@@ -52,7 +53,7 @@ pub fn reset(document: &Document, parameter: &Parameter, (groom, group): (usize,
         // Without a value, these would lose the value of the style.
         return parameter.key(groom, group).look_up(document.opened().values()).and_then(written);
     }
-    parameter.said(document, groom, group)?.look_up(document.opened().said()).and_then(written)
+    parameter.text_key(document, groom, group)?.look_up(document.opened().parsed_text()).and_then(written)
 }
 
 /// Converts a value to the form in which it is written in the text.

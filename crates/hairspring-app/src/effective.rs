@@ -15,14 +15,14 @@ fn value(of: &impl serde::Serialize) -> toml::Value {
 
 /// Returns the effective values of these settings, with the keys of a scene file. There are two differences:
 /// `groom` lists all grooms, including those of the built-in scene with the values of `[builtin]`; and a
-/// groom's `material` is the list of its materials, each with its `preset`. `said` is the parsed text. A
+/// groom's `material` is the list of its materials, each with its `preset`. `parsed` is the parsed text. A
 /// motion is not a setting, so its keys are taken from the text.
-pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
-    let made = scene.grooms.len().saturating_sub(entries(said, "groom").len());
+pub fn effective(scene: &Scene, parsed: &toml::Table) -> toml::Table {
+    let made = scene.grooms.len().saturating_sub(entries(parsed, "groom").len());
     let grooms = scene.grooms.iter().enumerate().map(|(place, groom)| {
         let text = match place.checked_sub(made) {
-            Some(listed) => entries(said, "groom").get(listed),
-            None => said.get("builtin").filter(|_| place == 0),
+            Some(listed) => entries(parsed, "groom").get(listed),
+            None => parsed.get("builtin").filter(|_| place == 0),
         };
         let mut table = toml::Table::new();
         table.insert("look".into(), value(&groom.look));
@@ -33,7 +33,7 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
         let materials = materials.iter().enumerate().map(|(group, material)| {
             let mut material = value(material);
             if let Some(table) = material.as_table_mut() {
-                let preset = preset_of(said, text, place < made, group).unwrap_or("none");
+                let preset = preset_of(parsed, text, place < made, group).unwrap_or("none");
                 table.insert("preset".into(), preset.into());
             }
             material
@@ -64,13 +64,13 @@ pub fn effective(scene: &Scene, said: &toml::Table) -> toml::Table {
     ] {
         all.insert(name.into(), value);
     }
-    if let Some(clip) = said.get("clip") {
+    if let Some(clip) = parsed.get("clip") {
         all.insert("clip".into(), motion(clip));
     }
-    if let Some(body) = said.get("body") {
+    if let Some(body) = parsed.get("body") {
         all.insert("body".into(), picked(body, &["color", "roughness"]).into());
     }
-    let sheets = entries(said, "sheet").iter().map(|sheet| {
+    let sheets = entries(parsed, "sheet").iter().map(|sheet| {
         let mut table = picked(sheet, &["joint", "thickness", "initial"]);
         table.entry("thickness").or_insert(value(&SceneSheet::THICKNESS));
         table.entry("initial").or_insert(value(&InitialContact::default()));
@@ -97,9 +97,9 @@ fn built(text: &toml::Value, table: &mut toml::Table) {
 /// Adds the values of a `[[groom]]` that the settings do not have: the number of hairs, and the placement.
 fn listed(text: &toml::Value, table: &mut toml::Table) {
     let over = |base: toml::Value, name: &str| {
-        let (mut base, said) = (base.try_into::<toml::Table>().unwrap_or_default(), text.get(name));
+        let (mut base, own) = (base.try_into::<toml::Table>().unwrap_or_default(), text.get(name));
         base.extend(
-            said.and_then(toml::Value::as_table).into_iter().flatten().map(|(k, v)| (k.clone(), v.clone())),
+            own.and_then(toml::Value::as_table).into_iter().flatten().map(|(k, v)| (k.clone(), v.clone())),
         );
         base
     };
@@ -156,7 +156,7 @@ fn guides(groom: &SceneGroom) -> toml::Value {
 /// Name of the preset that a groom's material is based on. `text` is the groom's table; `built` marks that of
 /// the built-in scene, whose style has a material.
 fn preset_of(
-    said: &toml::Table,
+    parsed: &toml::Table,
     text: Option<&toml::Value>,
     built: bool,
     group: usize,
@@ -168,14 +168,14 @@ fn preset_of(
         None if built => text.get("style").map_or(Some(Style::default().name()), toml::Value::as_str),
         None => None,
     }?;
-    let own = said.get("material").and_then(|materials| materials.get(named));
+    let own = parsed.get("material").and_then(|materials| materials.get(named));
     let name = own.map_or(Some(named), |own| own.get("preset").and_then(toml::Value::as_str))?;
     PRESETS.into_iter().find(|preset| *preset == name)
 }
 
 /// The entries of a list of tables.
-pub fn entries<'a>(said: &'a toml::Table, list: &str) -> &'a [toml::Value] {
-    said.get(list).and_then(toml::Value::as_array).map_or(&[], Vec::as_slice)
+pub fn entries<'a>(parsed: &'a toml::Table, list: &str) -> &'a [toml::Value] {
+    parsed.get(list).and_then(toml::Value::as_array).map_or(&[], Vec::as_slice)
 }
 
 /// Settings have single precision. Each number is replaced by its shortest decimal representation, as a

@@ -158,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_field_is_there_once_and_has_a_definition() {
+    fn every_field_is_listed_once_and_has_a_definition() {
         for (k, field) in ALL.iter().enumerate() {
             assert!(!field.label.is_empty(), "{}", field.name);
             assert!(ALL[..k].iter().all(|other| other.name != field.name), "{} is there twice", field.name);

@@ -105,9 +105,9 @@ impl Handle {
 }
 
 /// All handles of a scene, as seen through `lens`. `distance` is that from the camera to its target [m].
-pub fn all(document: &Document, scenery: &StageSnapshot, lens: &Lens, distance: f32) -> Vec<Handle> {
+pub fn all(document: &Document, stage: &StageSnapshot, lens: &Lens, distance: f32) -> Vec<Handle> {
     let mut handles = vec![wind(document, lens, distance)];
-    let carried = &scenery.carried;
+    let carried = &stage.carried;
     for (name, one, poses) in [
         ("collider", "Collider", &carried.colliders),
         ("hand", "Hand", &carried.hands),
@@ -224,9 +224,9 @@ mod tests {
     }
 
     #[test]
-    fn a_handle_that_is_pulled_nowhere_changes_nothing() {
-        let (mut document, scenery, lens) = scene();
-        let handles = all(&document, &scenery, &lens, 2.0);
+    fn a_handle_that_is_not_moved_changes_nothing() {
+        let (mut document, stage, lens) = scene();
+        let handles = all(&document, &stage, &lens, 2.0);
         // The wind; a sphere's center and rim; a comb's ends; a fan's center, rim and tip; a charged sphere's
         // center and rim.
         assert_eq!(handles.len(), 1 + 2 + 2 + 3 + 2);
@@ -262,12 +262,12 @@ mod tests {
     }
 
     #[test]
-    fn what_a_joint_has_carried_is_moved_where_it_is() {
-        let (mut document, mut scenery, lens) = scene();
+    fn a_handle_moves_a_shape_on_a_joint_in_the_space_of_the_joint() {
+        let (mut document, mut stage, lens) = scene();
         let turn = glam::Quat::from_rotation_y(std::f32::consts::FRAC_PI_2);
-        scenery.carried.colliders =
+        stage.carried.colliders =
             vec![RigidTransform { rotation: turn, translation: Vec3::new(0.0, 0.5, 0.0) }];
-        let handles = all(&document, &scenery, &lens, 2.0);
+        let handles = all(&document, &stage, &lens, 2.0);
         let ball = &handles[1];
         assert!(ball.at.distance(Vec3::new(0.25, 1.8, 0.0)) < 1e-6, "{}", ball.at);
         // 5 cm along the world's x are 5 cm along its own z.
@@ -277,9 +277,9 @@ mod tests {
     }
 
     #[test]
-    fn an_arrow_turns_and_blows_by_its_length_and_goes_back_in_one_step() {
-        let (mut document, scenery, lens) = scene();
-        let handles = all(&document, &scenery, &lens, 2.0);
+    fn an_arrow_sets_axis_and_speed_in_one_undo_step() {
+        let (mut document, stage, lens) = scene();
+        let handles = all(&document, &stage, &lens, 2.0);
         let tip = handles.iter().find(|h| h.name.contains("turn")).unwrap();
         let middle = tip.arrow().unwrap();
         let Action::SetAll(values) = tip.pulled(middle + Vec3::X * ARROW * 3.0) else { panic!() };

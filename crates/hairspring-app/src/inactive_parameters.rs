@@ -90,14 +90,14 @@ mod tests {
 
     const HEAD: &str = "[builtin]\nstrands = 10\nguides = 5\n";
 
-    fn idle(text: &str, name: &str) -> bool {
+    fn inactive(text: &str, name: &str) -> bool {
         let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
         let parameter = parameter::ALL.iter().find(|p| p.name == name).unwrap();
         parameter.inactive_reason(&document, (0, 0)).is_some()
     }
 
     /// Parameters without effect in the built-in scene, and text that activates them.
-    const WOKEN: [(&str, &str); 24] = [
+    const ENABLED_BY: [(&str, &str); 24] = [
         ("effects.curl_length", "[builtin.effects]\ncurl_radius = 0.004\n"),
         ("global_shape.profile", "[material.m]\nglobal_shape = { pull = 2.0 }\n"),
         ("global_shape.damping", "[material.m]\nglobal_shape = { pull = 2.0 }\n"),
@@ -128,18 +128,18 @@ mod tests {
     ];
 
     #[test]
-    fn what_is_off_is_idle_and_wakes_when_it_is_switched_on() {
-        for (name, on) in WOKEN {
-            assert!(idle(HEAD, name), "{name} while it is off");
+    fn parameters_of_a_disabled_effect_are_inactive_until_it_is_enabled() {
+        for (name, on) in ENABLED_BY {
+            assert!(inactive(HEAD, name), "{name} while it is off");
             let with = HEAD.replace("guides = 5\n", "guides = 5\nmaterial = \"m\"\n");
             let text =
                 if on.starts_with("[material") { format!("{with}{on}") } else { format!("{HEAD}{on}") };
-            assert!(!idle(&text, name), "{name} with {on}");
+            assert!(!inactive(&text, name), "{name} with {on}");
         }
     }
 
     #[test]
-    fn what_the_integrator_or_the_motion_does_not_know_is_idle() {
+    fn parameters_without_effect_on_the_current_settings_are_inactive() {
         for (name, text) in [
             ("bend", "[solver]\nintegrator = \"dftl\"\n"),
             ("shear", "[solver]\nintegrator = \"local-global\"\n"),
@@ -153,12 +153,12 @@ mod tests {
                 "[clip]\nkeys = [{ time = 0.0, position = [0.0, 0.0, 0.0], rotation = [0.0, 0.0, 0.0] }]\n",
             ),
         ] {
-            assert!(!idle(HEAD, name), "{name} counts by default");
-            assert!(idle(&format!("{HEAD}{text}"), name), "{name} with {text}");
+            assert!(!inactive(HEAD, name), "{name} counts by default");
+            assert!(inactive(&format!("{HEAD}{text}"), name), "{name} with {text}");
         }
         // Charged hair also repels itself.
-        assert!(!idle(HEAD, "charge"), "a charge acts without charged bodies");
+        assert!(!inactive(HEAD, "charge"), "a charge acts without charged bodies");
         // Values that replace others.
-        assert!(idle(&format!("{HEAD}[builtin.look]\nmelanin = 0.5\n"), "look.root_color"));
+        assert!(inactive(&format!("{HEAD}[builtin.look]\nmelanin = 0.5\n"), "look.root_color"));
     }
 }

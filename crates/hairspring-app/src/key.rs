@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_on_the_way_are_made() {
+    fn missing_parent_tables_are_created() {
         let after =
             written("[[groom]]\nfile = \"a.hair\"\n", "groom[0].look.roughness", Some(0.5.into())).unwrap();
         assert_eq!(after, "[[groom]]\nfile = \"a.hair\"\n\n[groom.look]\nroughness = 0.5\n");
@@ -211,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_and_tables_in_a_line_are_walked() {
+    fn keys_reach_into_lists_and_inline_tables() {
         let text = "[[hand]]\ntool.grab = { center = [0.0, 0.0, 0.0], radius = 0.02 }\n";
         let after = written(text, "hand[0].tool.grab.radius", Some(0.05.into())).unwrap();
         assert_eq!(after, text.replace("0.02", "0.05"));

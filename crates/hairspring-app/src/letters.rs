@@ -71,7 +71,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_light_on_dark_and_stay_in_their_width() {
+    fn text_is_light_on_dark_and_clipped_to_its_width() {
         let mut image = Image::new(200, 30);
         Letters::default().write(
             &mut image,

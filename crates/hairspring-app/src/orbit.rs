@@ -148,14 +148,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_orbit_is_the_camera_it_was_made_of() {
+    fn an_orbit_gives_back_its_camera() {
         let camera = Camera::default();
         let back = Orbit::new(&camera).camera();
         assert!(back.position.distance(camera.position) < 1e-5 && back.target == camera.target);
     }
 
     #[test]
-    fn a_ray_goes_through_what_is_seen_there() {
+    fn a_ray_passes_through_the_projected_point() {
         let lens = Lens::new(&Camera::default(), 1.6);
         let p = Camera::default().target + Vec3::new(0.07, -0.04, 0.05);
         let (at, depth) = lens.project(p).unwrap();
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_panned_stays_under_the_pointer() {
+    fn the_target_stays_under_the_pointer_while_panning() {
         for aspect in [1.0, 0.5] {
             let mut orbit = Orbit::new(&Camera::default());
             let p = orbit.target;
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn a_narrow_picture_shows_as_much_across() {
+    fn a_narrow_picture_keeps_the_horizontal_field_of_view() {
         let orbit = Orbit::new(&Camera::default());
         let across = |aspect: f32| {
             let (_, way) = Lens::new(&orbit.seen(aspect), aspect).ray(Vec2::new(1.0, 0.5));

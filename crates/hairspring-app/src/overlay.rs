@@ -7,7 +7,7 @@ use crate::{
     orbit::Lens,
     ramp,
     snapshot::StageSnapshot,
-    view::{FINGERS, Hand, View},
+    view::{FINGERS, Tool, View},
 };
 use eframe::egui::{self, Color32, Pos2, Stroke};
 use glam::{Mat3, Vec2, Vec3};
@@ -76,7 +76,7 @@ impl OverlayPainter<'_> {
 /// Draws the enabled overlays over the picture at `rect`.
 pub fn draw(
     pen: &OverlayPainter,
-    scenery: &StageSnapshot,
+    stage: &StageSnapshot,
     view: &View,
     handles: &[Handle],
     picked: &[[usize; 2]],
@@ -84,34 +84,34 @@ pub fn draw(
     let painter = pen.painter;
     let overlays = view.overlays;
     if overlays.slice {
-        slice(pen, scenery, view.slice);
+        slice(pen, stage, view.slice);
     }
     if overlays.volume {
-        volume(pen, scenery);
+        volume(pen, stage);
     }
     if overlays.colliders {
         let stroke = Stroke::new(1.0, Color32::from_rgb(90, 200, 255));
-        scenery.colliders.iter().for_each(|o| collider(pen, scenery, o, stroke));
+        stage.colliders.iter().for_each(|o| collider(pen, stage, o, stroke));
     }
     if overlays.roots {
-        for (groom, still) in scenery.still.grooms.iter().enumerate() {
+        for (groom, still) in stage.still.grooms.iter().enumerate() {
             for strand in (0..still.strand_count()).step_by(1 + still.strand_count() / 4000) {
-                if let Some(at) = scenery.root(groom, strand).and_then(|p| pen.at(p)) {
+                if let Some(at) = stage.root(groom, strand).and_then(|p| pen.at(p)) {
                     painter.circle_filled(at, 1.2, Color32::from_rgb(255, 200, 60));
                 }
             }
         }
     }
     if overlays.frames {
-        axes::draw(pen, scenery, picked);
+        axes::draw(pen, stage, picked);
     }
-    if let Some((center, radius)) = view.reached().filter(|_| view.hand == Hand::Grab) {
+    if let Some((center, radius)) = view.reached().filter(|_| view.tool == Tool::Grab) {
         pen.ball(center, radius, Stroke::new(1.5, Color32::from_white_alpha(170)));
     }
-    if let Some((center, radius)) = view.reached().filter(|_| view.hand == Hand::Comb) {
+    if let Some((center, radius)) = view.reached().filter(|_| view.tool == Tool::Comb) {
         fingers(pen, center, radius, Stroke::new(2.0, Color32::from_white_alpha(170)));
     }
-    if let Some((center, radius)) = view.reached().filter(|_| view.hand == Hand::Ball) {
+    if let Some((center, radius)) = view.reached().filter(|_| view.tool == Tool::Ball) {
         // A sphere behind hair or in the head stays visible.
         let [x, y] = [pen.lens.right(), pen.lens.up()].map(|axis| axis * radius);
         pen.circle(center, x, y, Stroke::new(1.0, Color32::from_white_alpha(90)));
@@ -183,7 +183,7 @@ fn rose(pen: &OverlayPainter, from: Vec3, tip: Vec3, color: Color32) {
 /// Draws the outline of a collider.
 fn collider(
     pen: &OverlayPainter,
-    scenery: &StageSnapshot,
+    stage: &StageSnapshot,
     collider: &hairspring::collide::MovingCollider,
     stroke: Stroke,
 ) {
@@ -239,7 +239,7 @@ fn collider(
             let (center, radius) = custom.bounds();
             pen.ball(pose.point(center), radius, stroke);
         }
-        ColliderShape::Field(_) => skin(pen, scenery, stroke.color),
+        ColliderShape::Field(_) => skin(pen, stage, stroke.color),
         // A shape that a later version of the library adds.
         _ => {}
     }
@@ -250,9 +250,9 @@ fn triangle(pen: &OverlayPainter, [a, b, c]: [Vec3; 3], stroke: Stroke) {
 }
 
 /// Draws the visible side of the body as dots. The resolution of its field is similar to that of its mesh.
-fn skin(pen: &OverlayPainter, scenery: &StageSnapshot, color: Color32) {
-    let vertices = scenery.positions.iter().zip(&scenery.normals);
-    for (p, n) in vertices.step_by(1 + scenery.positions.len() / DOTS) {
+fn skin(pen: &OverlayPainter, stage: &StageSnapshot, color: Color32) {
+    let vertices = stage.positions.iter().zip(&stage.normals);
+    for (p, n) in vertices.step_by(1 + stage.positions.len() / DOTS) {
         if let Some(at) = pen.at(*p).filter(|_| n.dot(pen.lens.eye() - *p) > 0.0) {
             pen.painter.circle_filled(at, 1.0, color.gamma_multiply(0.7));
         }
@@ -261,9 +261,9 @@ fn skin(pen: &OverlayPainter, scenery: &StageSnapshot, color: Color32) {
 
 /// Draws a horizontal slice through the distance to all colliders: blue inside, white at the surface, red up
 /// to 5 cm outside.
-fn slice(pen: &OverlayPainter, scenery: &StageSnapshot, height: f32) {
-    let Some((low, high)) = scenery.bounds() else { return };
-    let poses: Vec<ColliderPose> = scenery
+fn slice(pen: &OverlayPainter, stage: &StageSnapshot, height: f32) {
+    let Some((low, high)) = stage.bounds() else { return };
+    let poses: Vec<ColliderPose> = stage
         .colliders
         .iter()
         .map(|o| ColliderPose::new(o.shape.clone(), o.end.matrix(), o.end.matrix(), 1.0))
@@ -303,11 +303,11 @@ fn slice(pen: &OverlayPainter, scenery: &StageSnapshot, height: f32) {
 }
 
 /// Draws the grid cells of the volume that contain hair, in warmer colors the fuller they are.
-fn volume(pen: &OverlayPainter, scenery: &StageSnapshot) {
-    let cell = scenery.volume.map_or(0.015, |v| v.cell);
-    let anchor = scenery.anchor;
+fn volume(pen: &OverlayPainter, stage: &StageSnapshot) {
+    let cell = stage.volume.map_or(0.015, |v| v.cell);
+    let anchor = stage.anchor;
     let mut cells: HashMap<[i32; 3], u32> = HashMap::new();
-    for p in scenery.points().flatten().filter(|p| p.is_finite()) {
+    for p in stage.points().flatten().filter(|p| p.is_finite()) {
         let own = (anchor.inverse_point(*p) / cell).floor();
         *cells.entry([own.x as i32, own.y as i32, own.z as i32]).or_default() += 1;
     }

@@ -107,7 +107,7 @@ mod tests {
     use glam::Quat;
 
     #[test]
-    fn the_balls_triangles_look_outward_and_close_it() {
+    fn the_triangles_of_the_ball_face_outward_and_enclose_its_volume() {
         let place = RigidTransform { translation: Vec3::X, ..RigidTransform::default() };
         let ball = Pushed::Ball(0.5).placed(place);
         let mut volume = 0.0;
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_drawn_is_what_hair_meets() {
+    fn drawn_surface_lies_on_the_colliders() {
         let pose =
             RigidTransform { rotation: Quat::from_rotation_x(1.0), translation: Vec3::new(0.3, -0.2, 1.0) };
         for pushed in [Pushed::Ball(0.02), Pushed::Ball(2.0), Pushed::Hand(0.019), Pushed::Hand(1.9)] {

@@ -41,7 +41,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_ends_hold_and_the_middle_is_bright() {
+    fn the_ramp_is_clamped_and_brightest_in_the_middle() {
         assert_eq!(color(-1.0, [0.0, 1.0]), color(0.0, [0.0, 1.0]));
         assert_eq!(color(2.0, [0.0, 1.0]), color(1.0, [0.0, 1.0]));
         let sum = |v: f32| color(v, [0.0, 1.0]).element_sum();

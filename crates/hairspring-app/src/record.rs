@@ -105,7 +105,7 @@ pub struct RecordRequest {
 struct Shot {
     snapshot: Arc<Snapshot>,
     /// View parameters of each stage.
-    sights: Vec<ViewParameters>,
+    views: Vec<ViewParameters>,
     /// Captions of two compared pictures.
     captions: [String; 2],
     /// Frame number, from 1.
@@ -119,7 +119,7 @@ enum Job {
 
 /// A recording in progress.
 pub struct Recorder {
-    wish: RecordRequest,
+    request: RecordRequest,
     frames: u32,
     /// Frames that were sent to the writer.
     sent: u32,
@@ -137,30 +137,32 @@ impl Recorder {
     /// Starts a recording. The scene is paused and advances with the recording. The frames are drawn by
     /// `gpu`, or by the CPU if it is `None`.
     pub fn new(
-        mut wish: RecordRequest,
+        mut request: RecordRequest,
         session: &mut Session,
         snapshot: &Snapshot,
         gpu: Option<Gpu>,
         wake: impl Fn() + Send + 'static,
     ) -> Result<Self, AppError> {
-        wish.path = destination(&wish.path)?;
-        let sink = Sink::new(&wish, gpu)?;
-        let frames = match wish.kind {
+        request.path = destination(&request.path)?;
+        let sink = Sink::new(&request, gpu)?;
+        let frames = match request.kind {
             Kind::Still => 1,
-            _ => ((f64::from(wish.seconds) * wish.format.rate.hertz()).round() as u32).clamp(1, 100_000),
+            _ => {
+                ((f64::from(request.seconds) * request.format.rate.hertz()).round() as u32).clamp(1, 100_000)
+            }
         };
         let played = session.playing();
         session.act(Action::Play(false))?;
         let (jobs, todo) = channel();
-        let (said, done) = channel();
+        let (results, done) = channel();
         std::thread::spawn(move || {
             sink.run(&todo, |outcome| {
-                let heard = said.send(outcome).is_ok();
+                let sent = results.send(outcome).is_ok();
                 wake();
-                heard
+                sent
             });
         });
-        Ok(Self { frames, sent: 0, written: 0, due: snapshot.step, played, jobs: Some(jobs), done, wish })
+        Ok(Self { frames, sent: 0, written: 0, due: snapshot.step, played, jobs: Some(jobs), done, request })
     }
 
     /// Advances as far as possible. Returns `Some` with a message when the recording has ended.
@@ -168,7 +170,7 @@ impl Recorder {
         &mut self,
         session: &mut Session,
         snapshot: &Arc<Snapshot>,
-        mut sights: Vec<ViewParameters>,
+        mut views: Vec<ViewParameters>,
     ) -> Option<Result<String, AppError>> {
         while let Ok(outcome) = self.done.try_recv() {
             if let Err(why) = outcome {
@@ -178,29 +180,29 @@ impl Recorder {
         }
         // The writer reports one more frame than was sent when the file is complete.
         if self.written > self.frames {
-            let path = self.wish.path.display();
-            let said = match self.wish.kind {
+            let path = self.request.path.display();
+            let message = match self.request.kind {
                 Kind::Still => format!("wrote {path}"),
                 _ => format!("wrote {path}: {} frames", self.frames),
             };
-            return Some(self.end(session, Ok(said)));
+            return Some(self.end(session, Ok(message)));
         }
-        let ready = self.sent == self.written && snapshot.step >= self.due && !sights.is_empty();
+        let ready = self.sent == self.written && snapshot.step >= self.due && !views.is_empty();
         if self.sent < self.frames && ready {
-            if self.wish.kind == Kind::Turntable {
+            if self.request.kind == Kind::Turntable {
                 let turn = self.sent as f32 / self.frames as f32 * std::f32::consts::TAU;
-                for sight in &mut sights {
-                    let orbit = Orbit::new(&sight.camera);
-                    sight.camera = Orbit { turn: orbit.turn + turn, ..orbit }.camera();
+                for view in &mut views {
+                    let orbit = Orbit::new(&view.camera);
+                    view.camera = Orbit { turn: orbit.turn + turn, ..orbit }.camera();
                 }
             }
             self.sent += 1;
             let (captions, number) = (session.captions().clone(), self.sent);
-            self.tell(Job::Frame(Shot { snapshot: snapshot.clone(), sights, captions, number }));
+            self.send(Job::Frame(Shot { snapshot: snapshot.clone(), views, captions, number }));
             if self.sent == self.frames {
-                self.tell(Job::Finish);
-            } else if matches!(self.wish.kind, Kind::Clip | Kind::Pictures) {
-                let (steps, rate) = self.wish.format.steps();
+                self.send(Job::Finish);
+            } else if matches!(self.request.kind, Kind::Clip | Kind::Pictures) {
+                let (steps, rate) = self.request.format.steps();
                 self.due = snapshot.step + u64::from(steps);
                 (0..steps).for_each(|_| session.step_at(rate));
             }
@@ -208,7 +210,7 @@ impl Recorder {
         None
     }
 
-    fn tell(&self, job: Job) {
+    fn send(&self, job: Job) {
         if let Some(jobs) = &self.jobs {
             // A writer that has ended has reported its error, which is received above.
             let _ = jobs.send(job);
@@ -242,8 +244,8 @@ enum Brush {
 impl Brush {
     fn draw(
         &mut self,
-        scenery: &StageSnapshot,
-        sight: &ViewParameters,
+        stage: &StageSnapshot,
+        view: &ViewParameters,
         [width, height]: [u32; 2],
     ) -> Result<Image, AppError> {
         match self {
@@ -251,12 +253,12 @@ impl Brush {
                 if (renderer.image().width, renderer.image().height) != (width, height) {
                     **renderer = Renderer::new(width, height);
                 }
-                Ok(scenery.draw(sight, false, |frame| renderer.draw(frame).clone()))
+                Ok(stage.draw(view, false, |frame| renderer.draw(frame).clone()))
             }
             Self::Gpu(renderer) => {
                 // Snapshots reuse their memory, so an array at the same address may have new content.
                 renderer.forget();
-                scenery.draw(sight, true, |frame| {
+                stage.draw(view, true, |frame| {
                     renderer.draw(frame, width, height);
                 });
                 renderer.read().map_err(|why| AppError::new(why.to_string()))
@@ -275,9 +277,9 @@ struct Sink {
 }
 
 impl Sink {
-    fn new(wish: &RecordRequest, gpu: Option<Gpu>) -> Result<Self, AppError> {
-        let path = wish.path.clone();
-        let RecordFormat { size, rate } = wish.format;
+    fn new(request: &RecordRequest, gpu: Option<Gpu>) -> Result<Self, AppError> {
+        let path = request.path.clone();
+        let RecordFormat { size, rate } = request.format;
         if size.iter().any(|side| !RecordFormat::SIDES.contains(side)) {
             let [width, height] = size;
             return Err(AppError::new(format!(
@@ -290,7 +292,7 @@ impl Sink {
         let wrong = |expected: &str| {
             Err(AppError::new(format!("{}: {expected} was expected; name such a file", path.display())))
         };
-        let clip = match (wish.kind, extension.as_str()) {
+        let clip = match (request.kind, extension.as_str()) {
             (Kind::Still, "png" | "jpg") => None,
             (Kind::Still, _) => return wrong("a .png or .jpg"),
             (Kind::Pictures, "png") if sequence_path(&path, 1).is_some() => None,
@@ -307,29 +309,29 @@ impl Sink {
         Ok(Self { path, size, clip, brush, side_by_side: SideBySide::default() })
     }
 
-    /// Draws and writes until it receives the end. `said` is called with the result of each frame and at the
+    /// Draws and writes until it receives the end. `report` is called with the result of each frame and at the
     /// end. No file of an unfinished clip is left.
-    fn run(mut self, todo: &Receiver<Job>, said: impl Fn(Result<(), AppError>) -> bool) {
+    fn run(mut self, todo: &Receiver<Job>, report: impl Fn(Result<(), AppError>) -> bool) {
         for job in todo {
             let outcome = match job {
                 Job::Frame(shot) => self.frame(&shot),
                 Job::Finish => {
                     let outcome = self.clip.take().map_or(Ok(()), ClipWriter::finish);
-                    said(outcome.map_err(AppError::from));
+                    report(outcome.map_err(AppError::from));
                     return;
                 }
             };
             let failed = outcome.is_err();
-            if !said(outcome) || failed {
+            if !report(outcome) || failed {
                 return;
             }
         }
     }
 
     fn frame(&mut self, shot: &Shot) -> Result<(), AppError> {
-        let image = match (&*shot.snapshot.stages, &*shot.sights) {
+        let image = match (&*shot.snapshot.stages, &*shot.views) {
             ([], _) | (_, []) => return Ok(()),
-            ([one], [sight, ..]) | ([one, ..], [sight]) => self.brush.draw(one, sight, self.size)?,
+            ([one], [view, ..]) | ([one, ..], [view]) => self.brush.draw(one, view, self.size)?,
             ([left, right, ..], [first, second, ..]) => {
                 self.pair([(left, first), (right, second)], &shot.captions)?
             }
@@ -371,7 +373,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_steps_of_a_frame_take_as_long_as_the_frame_and_none_is_longer_than_those_of_the_window() {
+    fn the_steps_of_a_frame_add_up_to_its_length_and_are_at_most_those_of_the_window() {
         for rate in ["1", "12", "23.976", "24", "25", "29.97", "30", "50", "59.94", "60", "120"] {
             let rate: FrameRate = rate.parse().unwrap();
             let (steps, of_step) = RecordFormat { rate, ..RecordFormat::default() }.steps();

@@ -243,12 +243,12 @@ impl StageSnapshot {
 
     /// Calls `draw` with the frame for this view. Only every `every`-th hair is included, drawn
     /// correspondingly wider. `card` tells whether the renderer can interpolate follow hairs.
-    pub fn draw<R>(&self, sight: &ViewParameters, card: bool, draw: impl FnOnce(&Frame) -> R) -> R {
+    pub fn draw<R>(&self, view: &ViewParameters, card: bool, draw: impl FnOnce(&Frame) -> R) -> R {
         let left = |g: usize| self.followers[g].as_ref().filter(|_| card);
         let thinned: Vec<Option<Thin>> = (0..self.points.len())
             .map(|g| {
                 // Brows have few hairs and are not thinned.
-                let every = sight.every.min(self.still.grooms[g].strand_count() / FEW).max(1);
+                let every = view.every.min(self.still.grooms[g].strand_count() / FEW).max(1);
                 (every > 1).then(|| Thin::new(self, g, every))
             })
             .collect();
@@ -261,8 +261,7 @@ impl StageSnapshot {
                 (None, None) => self.points_of(g),
             })
             .collect();
-        let colors: Vec<Vec<Vec3>> =
-            self.values.iter().map(|v| crate::ramp::colors(v, sight.range)).collect();
+        let colors: Vec<Vec<Vec3>> = self.values.iter().map(|v| crate::ramp::colors(v, view.range)).collect();
         let picked: Vec<Option<Vec<Vec3>>> =
             thinned.iter().enumerate().map(|(g, thin)| Some(thin.as_ref()?.pick(colors.get(g)?))).collect();
         let hair: Vec<HairDraw> = (0..points.len())
@@ -275,7 +274,7 @@ impl StageSnapshot {
                         radii: &thin.radii,
                         colors: picked[g].as_ref().unwrap_or(&thin.colors),
                         look: &self.looks[g],
-                        width_scale: sight.width * thin.every as f32,
+                        width_scale: view.width * thin.every as f32,
                         follow: None,
                     },
                     None => HairDraw {
@@ -284,13 +283,13 @@ impl StageSnapshot {
                         radii: &still.radii,
                         colors: colors.get(g).unwrap_or(&still.colors),
                         look: &self.looks[g],
-                        width_scale: sight.width,
+                        width_scale: view.width,
                         follow: left(g).map(|left| left.now(&self.colliders)),
                     },
                 }
             })
             .collect();
-        let body = self.still.body.as_ref().filter(|_| sight.body).map(|(triangles, parts)| MeshDraw {
+        let body = self.still.body.as_ref().filter(|_| view.body).map(|(triangles, parts)| MeshDraw {
             positions: &self.positions,
             normals: &self.normals,
             triangles,
@@ -299,13 +298,13 @@ impl StageSnapshot {
         let pushed = self.pushed.map(|(what, pose)| what.placed(pose));
         let bodies: Vec<MeshDraw> = body.into_iter().chain(pushed.as_ref().map(Placed::mesh)).collect();
         draw(&Frame {
-            hair: if sight.hair { &hair } else { &[] },
+            hair: if view.hair { &hair } else { &[] },
             bodies: &bodies,
-            camera: sight.camera,
-            lighting: Lighting { exposure: sight.exposure, ..Lighting::of(&self.picture, &sight.lit_for) },
+            camera: view.camera,
+            lighting: Lighting { exposure: view.exposure, ..Lighting::of(&self.picture, &view.lit_for) },
             background: Background::of(&self.picture),
             ground: self.ground,
-            quality: sight.quality,
+            quality: view.quality,
         })
     }
 }
@@ -324,8 +323,8 @@ struct Thin {
 }
 
 impl Thin {
-    fn new(scenery: &StageSnapshot, groom: usize, every: usize) -> Self {
-        let still = &scenery.still.grooms[groom];
+    fn new(stage_snapshot: &StageSnapshot, groom: usize, every: usize) -> Self {
+        let still = &stage_snapshot.still.grooms[groom];
         let strands: Vec<_> =
             still.offsets.windows(2).step_by(every).map(|w| w[0] as usize..w[1] as usize).collect();
         let mut thin = Self {
@@ -341,9 +340,9 @@ impl Thin {
             thin.colors.extend_from_slice(still.colors.get(strand.clone()).unwrap_or(&[]));
             thin.offsets.push(thin.radii.len() as u32);
         }
-        thin.points = match &scenery.followers[groom] {
-            Some(left) => left.some_points(every, &thin.offsets, &scenery.colliders),
-            None => thin.pick(&scenery.points[groom]),
+        thin.points = match &stage_snapshot.followers[groom] {
+            Some(left) => left.some_points(every, &thin.offsets, &stage_snapshot.colliders),
+            None => thin.pick(&stage_snapshot.points[groom]),
         };
         thin
     }
@@ -412,17 +411,17 @@ mod tests {
     };
 
     #[test]
-    fn a_root_that_is_placed_alone_is_where_its_hair_begins() {
+    fn roots_placed_separately_match_the_first_points_of_their_hairs() {
         let options = BuiltinOptions { strands: 300, guides: Guides::Count(40), ..BuiltinOptions::default() };
         let mut stage = Stage::new(builtin::scene(&options)).unwrap();
         stage.set_external_interpolation(true);
         (0..5).for_each(|_| _ = stage.step(1.0 / 60.0));
         let still = Arc::new(Still::new(&stage));
-        let mut scenery = StageSnapshot::new(still.clone());
-        scenery.fill(&stage, &still, None);
-        for (groom, points) in scenery.points().enumerate() {
+        let mut stage_snapshot = StageSnapshot::new(still.clone());
+        stage_snapshot.fill(&stage, &still, None);
+        for (groom, points) in stage_snapshot.points().enumerate() {
             for strand in 0..still.grooms[groom].strand_count() {
-                let root = scenery.root(groom, strand).unwrap();
+                let root = stage_snapshot.root(groom, strand).unwrap();
                 let first = points[still.grooms[groom].strand(strand).start];
                 assert!(root.distance(first) < 2e-6, "groom {groom}, strand {strand}: {root}, {first}");
             }

@@ -38,7 +38,7 @@ fn a_scene_in_another_folder_is_opened_by_clicks() {
 }
 
 #[test]
-fn an_existing_file_is_replaced_only_by_the_button_that_says_so() {
+fn only_the_replace_button_replaces_an_existing_file() {
     let _current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = tempfile::tempdir().unwrap();
     let groom = folder.path().join("old.hair");
@@ -51,7 +51,7 @@ fn an_existing_file_is_replaced_only_by_the_button_that_says_so() {
         (0..3).for_each(|_| window.step());
     }
     assert!(window.query_by_label("Write it").is_some());
-    // A double click opens or writes at once what does not exist yet.
+    // A double click immediately opens a file, or writes one that does not exist yet.
     for _ in 0..2 {
         window.get_by_label("old.hair").click();
         (0..2).for_each(|_| window.step());

@@ -27,7 +27,7 @@ fn unfinished(pattern: &Path, frames: &[u32], (scene, text): (&Path, &str), fps:
 }
 
 #[test]
-fn a_bake_is_what_the_library_plays_with_the_changes_of_the_window() {
+fn a_bake_includes_unsaved_changes_and_matches_the_library() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);
     let script = format!(

@@ -136,7 +136,7 @@ fn home(window: &mut Harness<'static, App>, folder: &Path) -> [usize; 2] {
 }
 
 #[test]
-fn random_actions_keep_the_session_sound() {
+fn random_actions_keep_the_session_valid() {
     let seconds = std::env::var("HAIRSPRING_MONKEY").ok().and_then(|s| s.parse().ok()).unwrap_or(10);
     // Random input may write files, so it runs in a folder of its own.
     let folder = tempfile::tempdir().unwrap();

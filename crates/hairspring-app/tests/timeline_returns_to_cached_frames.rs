@@ -50,7 +50,7 @@ fn points(snapshot: &Snapshot) -> Vec<Vec3> {
 }
 
 #[test]
-fn a_cached_frame_is_shown_again_and_plays_on_as_before() {
+fn a_cached_frame_is_restored_and_playback_continues_identically() {
     let mut session = session();
     let [early, late] = [12, 30].map(|frame| points(&step(&mut session, frame)));
     let shown = wait(&session, |s| s.frame == 30);
@@ -65,7 +65,7 @@ fn a_cached_frame_is_shown_again_and_plays_on_as_before() {
 }
 
 #[test]
-fn frames_after_a_grab_are_those_with_the_grab_and_it_does_not_last_after_a_return() {
+fn a_grab_is_cached_and_released_when_the_timeline_returns() {
     let mut session = session();
     let free = points(&step(&mut session, 30));
     seek(&mut session, 10);

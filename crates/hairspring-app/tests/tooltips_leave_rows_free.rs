@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use support::{SMALL, until, window};
 
 #[test]
-fn a_tooltip_is_beside_the_panel() {
+fn a_tooltip_is_outside_the_panel() {
     let folder = tempfile::tempdir().unwrap();
     let mut window = window(folder.path(), SMALL, "pause\nwait 1");
     assert!(until(&mut window, |app| app.is_idle()));

@@ -50,7 +50,7 @@ fn commands(window: &Harness<'static, App>) -> Vec<ViewportCommand> {
 }
 
 #[test]
-fn opening_another_scene_asks_first_and_does_as_it_is_told() {
+fn opening_another_scene_asks_first_and_follows_the_answer() {
     let folder = tempfile::tempdir().unwrap();
     let own = || std::fs::read_to_string(folder.path().join("own.toml")).unwrap();
     for (answer, after, saved) in
@@ -76,7 +76,7 @@ fn a_saved_scene_is_left_without_a_question() {
 }
 
 #[test]
-fn closing_the_window_asks_first_and_does_as_it_is_told() {
+fn closing_the_window_asks_first_and_follows_the_answer() {
     let folder = tempfile::tempdir().unwrap();
     for (answer, closed) in [("Cancel", false), ("Don't save", true), ("Save", true)] {
         let mut window = changed(folder.path(), false);

@@ -33,7 +33,7 @@ Exit codes:
   8    out of memory
   70   internal error
   130  interrupted (Ctrl-C, SIGTERM): no partial file is left. A run that writes frames completes the
-       current one first; a second interrupt ends it at once";
+       current one first; a second interrupt ends it immediately";
 
 /// Heading of the options that every command has.
 const EVERYWHERE: &str = "Global options";

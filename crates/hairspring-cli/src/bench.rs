@@ -4,7 +4,7 @@ mod scene;
 mod table;
 
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
     totals::grouped,
 };
@@ -225,7 +225,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let bytes = simulation.bytes() as f64 / simulation.point_count() as f64;
     let simd = simulation.instruction_set();
     if options.json {
-        say(json!({
+        print_line(json!({
             "device": options.device,
             "threads": threads,
             "strands": strands,
@@ -269,29 +269,29 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         }));
         return Ok(());
     }
-    say_scene(options);
-    say(format_args!(
+    print_scene(options);
+    print_line(format_args!(
         "on       {}, {threads} threads, {simd}, {}, {substeps} substeps, {frames} frames of 1/60 s",
         options.device, options.integrator
     ));
-    say(format_args!(
+    print_line(format_args!(
         "time     {median:.2} ms per frame (median), {fastest:.2} ms (fastest), {p95:.2} ms (95 %)"
     ));
-    say(format_args!("         {ns:.2} ns per point and substep, per core (wall time x threads)"));
-    say(format_args!(
+    print_line(format_args!("         {ns:.2} ns per point and substep, per core (wall time x threads)"));
+    print_line(format_args!(
         "stretch  {:.4} % mean, {:.3} % maximum at the end; {:.3} % maximum over all frames",
         measure.stretch_mean * 1e2,
         measure.stretch_max * 1e2,
         stretch_ever * 1e2
     ));
-    say(format_args!(
+    print_line(format_args!(
         "contact  {} points inside at the end, at most {:.4} mm deep; {:.4} mm over all frames; {} of them started inside",
         measure.inside_points,
         measure.depth_inside() * 1e3,
         depth_ever * 1e3,
         measure.started_inside_points
     ));
-    say(format_args!(
+    print_line(format_args!(
         "         {} segments deeper than they started at the end, {} of them by more than 1 mm, at most {:.4} mm deep; {:.4} mm over all frames",
         measure.inside_segments,
         measure.deep_segments,
@@ -299,7 +299,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         segment_ever * 1e3
     ));
     if let Some(volume) = simulation.volume() {
-        say(format_args!(
+        print_line(format_args!(
             "volume   {}, cells of {:.1} mm, {} nodes, {:.1} % of the rest volume filled",
             method.name(),
             volume.cell * 1e3,
@@ -307,16 +307,16 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             volume.volume_ratio * 1e2
         ));
     }
-    say(format_args!("memory   {bytes:.1} bytes per point"));
-    say(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
+    print_line(format_args!("memory   {bytes:.1} bytes per point"));
+    print_line(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
     Ok(())
 }
 
 /// Prints the size of the simulated hair.
-fn say_scene(options: &Options) {
+fn print_scene(options: &Options) {
     let (strands, points) = (options.strands as usize, options.points as usize);
     let all = grouped(strands * points);
-    say(format_args!("scene    {} strands x {points} points = {all} points", grouped(strands)));
+    print_line(format_args!("scene    {} strands x {points} points = {all} points", grouped(strands)));
 }
 
 /// Returns an error if `name` is not one of the valid names in `there`.

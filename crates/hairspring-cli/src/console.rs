@@ -39,7 +39,7 @@ fn printable(text: &impl Display) -> String {
 
 /// Prints a line of the result. After an error (a closed pipe, a full disk) nothing more is printed;
 /// [`finish`] returns the error, so that a command still completes its files.
-pub fn say(line: impl Display) {
+pub fn print_line(line: impl Display) {
     let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
     if unprinted.is_none() {
         *unprinted = writeln!(stdout(), "{}", printable(&line)).err();
@@ -72,7 +72,7 @@ fn event(event: &serde_json::Value) {
 }
 
 /// Prints a line about an error.
-pub fn complain(line: &impl Display) {
+pub fn print_error(line: &impl Display) {
     let _ = writeln!(stderr(), "error: {}", printable(line));
 }
 
@@ -147,11 +147,11 @@ impl Progress {
             })),
             (_, ProgressForm::Openjd) => {
                 // The result is on standard output too; a closed pipe is reported at the end.
-                say(format_args!(
+                print_line(format_args!(
                     "openjd_progress: {:.2}",
                     100.0 * f64::from(done) / f64::from(total.max(1))
                 ));
-                say(format_args!("openjd_status: {what}, {done} of {total} {unit}"));
+                print_line(format_args!("openjd_status: {what}, {done} of {total} {unit}"));
             }
             (Some(bar), _) => bar.inc(1),
             (None, _) => {

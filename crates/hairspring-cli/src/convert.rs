@@ -1,9 +1,9 @@
 //! `hairspring convert`: a groom from one format to another.
 
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
-    input::{Units, tell},
+    input::{Units, print_notes},
     output,
     totals::grouped,
 };
@@ -44,13 +44,13 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     output::try_folder(to)?;
     let mut loaded = read_groom(from, &(*units).into()).map_err(|e| Fault::reading(e, from))?;
-    tell(&loaded.notes, &loaded.repairs, console);
+    print_notes(&loaded.notes, &loaded.repairs, console);
     if units.reverse {
         loaded.value.reverse();
     }
     let lost = write_groom(to, &loaded.value).map_err(Fault::writing)?;
     lost.iter().for_each(|l| console.note(l));
-    say(format_args!(
+    print_line(format_args!(
         "wrote    {} ({} strands, {} points)",
         to.display(),
         grouped(loaded.value.strand_count()),

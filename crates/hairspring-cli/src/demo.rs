@@ -2,7 +2,7 @@
 //! and a still.
 
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
     film::Sink,
     frames, output,
@@ -111,15 +111,15 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "fps": options.fps.hertz(),
             "size": [width, height],
         });
-        say(totals.json(&stage, summary));
+        print_line(totals.json(&stage, summary));
     } else {
-        say(format_args!(
+        print_line(format_args!(
             "clip     {} ({frames} frames, {width}x{height}, {} per second)",
             film.display(),
             options.fps
         ));
-        say(format_args!("still    {} (frame {moment})", still.display()));
-        totals.tell(&stage);
+        print_line(format_args!("still    {} (frame {moment})", still.display()));
+        totals.print(&stage);
     }
     Ok(())
 }

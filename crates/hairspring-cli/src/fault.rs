@@ -44,13 +44,13 @@ impl Fault {
         }
     }
 
-    /// Converts an error of reading `asked`, a file named on the command line. An unknown kind of file is an
-    /// error of the command line if it is `asked` itself, and an error of the content if a scene names it.
-    pub fn reading(error: FileError, asked: &Path) -> Self {
+    /// Converts an error of reading `input`, a file named on the command line. An unknown kind of file is an
+    /// error of the command line if it is `input` itself, and an error of the content if a scene names it.
+    pub fn reading(error: FileError, input: &Path) -> Self {
         let sentence = error.to_string();
         match &error {
             FileError::NotFound { .. } | FileError::Unreadable { .. } => Self::Unreadable(sentence),
-            FileError::Unsupported { path, .. } if path == asked => Self::Usage(sentence),
+            FileError::Unsupported { path, .. } if path == input => Self::Usage(sentence),
             _ => Self::Content(sentence),
         }
     }
@@ -127,6 +127,6 @@ pub fn report_panics() {
              that caused it",
             env!("CARGO_PKG_VERSION")
         );
-        crate::console::complain(&sentence);
+        crate::console::print_error(&sentence);
     }));
 }

@@ -1,9 +1,9 @@
 //! `hairspring info`: describes the content of a file.
 
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
-    input::{Units, tell},
+    input::{Units, print_notes},
     totals::grouped,
 };
 use clap::Parser;
@@ -53,11 +53,11 @@ pub struct Options {
 fn external(path: &Path, units: &ReadOptions, console: Console) -> Result<Value, Fault> {
     let mut found = json!({});
     let hair = read_groom(path, units).map(|loaded| {
-        tell(&loaded.notes, &loaded.repairs, console);
+        print_notes(&loaded.notes, &loaded.repairs, console);
         found["groom"] = groom(&loaded.value, &loaded.repairs);
     });
     let mesh = read_body(path, units).map(|loaded| {
-        tell(&loaded.notes, &loaded.repairs, console);
+        print_notes(&loaded.notes, &loaded.repairs, console);
         found["body"] = body(&loaded.value.body);
     });
     match (hair, mesh) {
@@ -85,7 +85,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let mut found = match format {
         Format::Hair | Format::Tfx | Format::Usc | Format::Csv | Format::Ply => {
             let mut loaded = read_groom(path, &units).map_err(wrong)?;
-            tell(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, &loaded.repairs, console);
             if options.units.reverse {
                 loaded.value.reverse();
             }
@@ -105,7 +105,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         }
         Format::Gltf | Format::Obj | Format::TfxMesh => match read_body(path, &units) {
             Ok(loaded) => {
-                tell(&loaded.notes, &loaded.repairs, console);
+                print_notes(&loaded.notes, &loaded.repairs, console);
                 let mut found = body(&loaded.value.body);
                 found["motions"] = loaded.value.clips.iter().map(clip).collect();
                 found
@@ -113,13 +113,13 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             // A file of lines is a groom.
             Err(why) => {
                 let loaded = read_groom(path, &units).map_err(|_| wrong(why))?;
-                tell(&loaded.notes, &loaded.repairs, console);
+                print_notes(&loaded.notes, &loaded.repairs, console);
                 groom(&loaded.value, &loaded.repairs)
             }
         },
         Format::Bvh => {
             let loaded = read_motion(path, None, &units).map_err(wrong)?;
-            tell(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, &loaded.repairs, console);
             let Motion { joints, clip: motion } = loaded.value;
             let mut found = clip(&motion);
             let skeleton = Body { joints, ..Body::default() };
@@ -134,7 +134,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         }
         Format::Scene => {
             let loaded = read_scene(path).map_err(wrong)?;
-            tell(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, &loaded.repairs, console);
             scene(&loaded.value, &loaded.repairs)
         }
     };
@@ -143,7 +143,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         all.append(found);
     }
     match options.json {
-        true => say(&all),
+        true => print_line(&all),
         false => lines(path, &all),
     }
     Ok(())
@@ -260,7 +260,7 @@ fn bounds(bounds: Option<(Vec3, Vec3)>) -> Value {
 
 /// Prints the figures as lines of `name value`, with groups indented under their name.
 fn lines(path: &Path, all: &Value) {
-    say(path.display());
+    print_line(path.display());
     show(all, 1);
 }
 
@@ -275,10 +275,10 @@ fn show(value: &Value, depth: usize) {
         };
         if let (Some(Value::Array(names)), Value::Array(items)) = (named, value) {
             if !names.is_empty() {
-                say(format_args!("{:indent$}{}", "", name.replace('_', " "), indent = 2 * depth));
+                print_line(format_args!("{:indent$}{}", "", name.replace('_', " "), indent = 2 * depth));
             }
             for (name, item) in names.iter().zip(items) {
-                say(format_args!(
+                print_line(format_args!(
                     "{:indent$}{:<24} {}",
                     "",
                     plain(name),
@@ -291,16 +291,16 @@ fn show(value: &Value, depth: usize) {
         let label = format!("{:indent$}{:<12}", "", name.replace('_', " "), indent = 2 * depth);
         match value {
             Value::Object(_) => {
-                say(label.trim_end());
+                print_line(label.trim_end());
                 show(value, depth + 1);
             }
             Value::Array(items) if items.iter().any(Value::is_object) => {
                 for (i, item) in items.iter().enumerate() {
-                    say(format_args!("{:indent$}{name} {}", "", i + 1, indent = 2 * depth));
+                    print_line(format_args!("{:indent$}{name} {}", "", i + 1, indent = 2 * depth));
                     show(item, depth + 1);
                 }
             }
-            _ => say(format_args!("{label} {}", plain(value))),
+            _ => print_line(format_args!("{label} {}", plain(value))),
         }
     }
 }

@@ -26,7 +26,7 @@ pub struct Units {
 }
 
 impl Units {
-    /// Refuses them for a scene, which says itself how its files are read.
+    /// Returns an error for a scene file, which sets them per file.
     pub fn refuse_for_scene(self) -> Result<(), Fault> {
         if self.scale.is_some() || self.up.is_some() {
             let text =
@@ -109,7 +109,7 @@ impl Input {
         let mut scene = if Format::of(path) == Some(Format::Scene) {
             self.units.refuse_for_scene()?;
             let loaded = read_scene(path).map_err(|e| Fault::reading(e, path))?;
-            tell(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, &loaded.repairs, console);
             loaded.value
         } else {
             let mut loaded = read_groom(path, &self.units.into()).map_err(|e| match e {
@@ -118,7 +118,7 @@ impl Input {
                 }
                 other => Fault::reading(other, path),
             })?;
-            tell(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, &loaded.repairs, console);
             if self.units.reverse {
                 loaded.value.reverse();
             }
@@ -143,7 +143,7 @@ impl Input {
     fn add_body(&self, scene: &mut Scene, console: Console) {
         match read_body(&self.path, &self.units.into()) {
             Ok(loaded) => {
-                tell(&loaded.notes, &loaded.repairs, console);
+                print_notes(&loaded.notes, &loaded.repairs, console);
                 (scene.body, scene.vertex_cache) = (Some(loaded.value.body), loaded.value.vertex_cache);
             }
             Err(why) => console.note(format_args!("the hair has no body: {why}")),
@@ -170,7 +170,7 @@ fn alone(path: &Path, groom: hairspring::groom::Groom) -> Scene {
 }
 
 /// Prints what a reader guessed, left out and repaired.
-pub fn tell(notes: &[String], repairs: &Repairs, console: Console) {
+pub fn print_notes(notes: &[String], repairs: &Repairs, console: Console) {
     notes.iter().for_each(|n| console.note(n));
     if repairs.total() > 0 {
         console.note(format_args!("repaired {}", repaired(repairs)));

@@ -1,8 +1,8 @@
 //! Ctrl-C, SIGTERM and SIGHUP end a run with [`CODE`]. No partial file is left, neither under its final name
 //! nor under a temporary one.
 //!
-//! At first a signal ends the program at once. A command that keeps what is finished calls [`finish_current`];
-//! from there on the first signal ends it after the current frame, and the second one at once.
+//! At first a signal ends the program immediately. A command that keeps what is finished calls [`finish_current`];
+//! from there on the first signal ends it after the current frame, and the second one immediately.
 
 use crate::console;
 use std::sync::{
@@ -13,7 +13,7 @@ use std::sync::{
 /// Exit code of an interrupted run.
 pub const CODE: u8 = 130;
 
-static ASKED: AtomicBool = AtomicBool::new(false);
+static STOP_REQUESTED: AtomicBool = AtomicBool::new(false);
 
 /// What the first signal waits for.
 static CURRENT: Mutex<Option<&'static str>> = Mutex::new(None);
@@ -28,28 +28,28 @@ fn report_file_size_limit() {
     }
 }
 
-/// Installs the handler. From here on a signal ends the program at once. `quiet`: no note after the first
+/// Installs the handler. From here on a signal ends the program immediately. `quiet`: no note after the first
 /// signal of a run that waits for its frame.
-pub fn listen(quiet: bool) {
+pub fn install_handler(quiet: bool) {
     report_file_size_limit();
     // If the system has no such signal, the run can only be killed.
     let _ = ctrlc::set_handler(move || {
         // The lock is held until the exit, so that the run does not begin to write frames meanwhile.
         let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(what) = *current
-            && !ASKED.swap(true, Ordering::Relaxed)
+            && !STOP_REQUESTED.swap(true, Ordering::Relaxed)
         {
             if !quiet {
-                console::note(format_args!("stopping after {what}; a second interrupt stops at once"));
+                console::note(format_args!("stopping after {what}; a second interrupt stops immediately"));
             }
             return;
         }
         hairspring_file::remove_pending_files();
         match *current {
-            Some(what) => console::complain(&format_args!(
+            Some(what) => console::print_error(&format_args!(
                 "interrupted before the end of {what}; no partial file is left"
             )),
-            None => console::complain(&"interrupted; no partial file is left"),
+            None => console::print_error(&"interrupted; no partial file is left"),
         }
         std::process::exit(CODE.into());
     });
@@ -61,6 +61,6 @@ pub fn finish_current(what: &'static str) {
 }
 
 /// Whether the user has requested a stop.
-pub fn asked() -> bool {
-    ASKED.load(Ordering::Relaxed)
+pub fn stop_requested() -> bool {
+    STOP_REQUESTED.load(Ordering::Relaxed)
 }

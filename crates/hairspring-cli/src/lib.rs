@@ -45,7 +45,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     match outcome {
         Ok(Ok(code)) => code,
         Ok(Err(fault)) => {
-            console::complain(&fault);
+            console::print_error(&fault);
             fault.code()
         }
         // The panic hook has already printed the error.
@@ -80,7 +80,7 @@ pub fn scene_with(path: &Path, folder: &Path, values: &[(String, String)]) -> Re
 }
 
 fn run_command(cli: Cli) -> Result<(), Fault> {
-    interrupt::listen(cli.quiet);
+    interrupt::install_handler(cli.quiet);
     if let Some(threads) = cli.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads as usize)

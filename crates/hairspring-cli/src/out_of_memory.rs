@@ -1,7 +1,7 @@
 //! A run that needs more memory than there is ends with a sentence and [`CODE`], and leaves no partial file.
 //!
 //! Rust aborts when an allocation fails. [`Watched`] is the system's allocator, which also remembers that one did; the
-//! handler of the abort then says so.
+//! handler of the abort then reports it.
 
 use std::{
     alloc::{GlobalAlloc, Layout, System},
@@ -56,12 +56,12 @@ pub fn report() {
                 return;
             }
             hairspring_file::remove_pending_files();
-            crate::console::complain(
+            crate::console::print_error(
                 &"out of memory: use fewer strands or points, or free memory; no partial file is left",
             );
             std::process::exit(CODE.into());
         };
-        // SAFETY: the only abort after a failed allocation is that of the thread that asked for it, in the middle of no
+        // SAFETY: the only abort after a failed allocation is that of the thread that requested it, in the middle of no
         // other call of the allocator or of a file's lock: the handler runs as a function that this thread calls. After
         // any other abort it does nothing.
         let installed = unsafe { signal_hook_registry::register(libc::SIGABRT, handler) };

@@ -31,7 +31,7 @@ pub fn try_folder(path: &Path) -> Result<(), Fault> {
         let text = format!("{} is a folder; name a file in it", path.display());
         return Err(Fault::Unwritable(text));
     }
-    // Creates an unnamed file if the system supports it, otherwise one that is removed at once.
+    // Creates an unnamed file if the system supports it, otherwise one that is removed immediately.
     tempfile::tempfile_in(folder).map(drop).map_err(|e| {
         Fault::Unwritable(format!("cannot write to the folder {}: {e}; choose another", folder.display()))
     })

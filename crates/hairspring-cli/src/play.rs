@@ -34,7 +34,7 @@ pub fn play_from(
     for frame in first..=last {
         let report = if frame == first { FrameReport::default() } else { stage.step_frame(fps) };
         show(frame, stage, &report)?;
-        if frame < last && interrupt::asked() {
+        if frame < last && interrupt::stop_requested() {
             return Ok(Ending::Stopped(frame));
         }
     }

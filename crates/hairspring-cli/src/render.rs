@@ -1,7 +1,7 @@
 //! `hairspring render`: draws a scene or a groom.
 
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
     film::{Film, Sink},
     frames::{self, FrameRange},
@@ -134,18 +134,18 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "fps": options.fps.hertz(),
             "size": [options.view.size.0, options.view.size.1],
         });
-        say(totals.json(&stage, summary));
+        print_line(totals.json(&stage, summary));
     } else {
         let skipped = match range.count() as usize - wanted.len() {
             0 => String::new(),
             n => format!(", {n} existed already"),
         };
-        say(format_args!(
+        print_line(format_args!(
             "wrote    {} ({}{skipped})",
             options.output.display(),
             totals::frames(wanted.len())
         ));
-        totals.tell(&stage);
+        totals.print(&stage);
     }
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! A summary of what was simulated and how fast, as text and as JSON.
 
-use crate::console::say;
+use crate::console::print_line;
 use hairspring_scene::stage::{FrameReport, Stage};
 use hairspring_view::Timings;
 use serde_json::{Map, Value, json};
@@ -93,7 +93,7 @@ impl Totals {
     }
 
     /// Prints the summary on standard output.
-    pub fn tell(&self, stage: &Stage) {
+    pub fn print(&self, stage: &Stage) {
         let (guides, strands) = stage.simulated_strands();
         let (guide_points, points) = stage.simulated_points();
         let ran = match guides == strands {
@@ -106,31 +106,31 @@ impl Totals {
                 grouped(guide_points)
             ),
         };
-        say(format_args!("ran      {ran}"));
+        print_line(format_args!("ran      {ran}"));
         let substeps = match self.substeps {
             0 => "no substeps".into(),
             n => format!("{n} substeps per frame"),
         };
-        say(format_args!(
+        print_line(format_args!(
             "on       {} threads, {}, {substeps}",
             rayon::current_num_threads(),
             stage.instruction_set()
         ));
         let start = stage.start();
         if start.stiffened > 0 {
-            say(format_args!(
+            print_line(format_args!(
                 "start    {} stiffer than their fiber, by the least amount that holds the groom as authored",
                 joints(start.stiffened)
             ));
         }
         if start.coils > 0 {
             let coils = start.coils;
-            say(format_args!(
+            print_line(format_args!(
                 "start    {coils} strands coil by more than one and a half turns; they are simulated as rods, because the curvature model has no twist"
             ));
         }
         if start.held_back > 0 {
-            say(format_args!(
+            print_line(format_args!(
                 "start    {} softer than specified, the most that is stable at {} substeps; use more substeps",
                 joints(start.held_back),
                 stage.scene().solver.substeps
@@ -138,24 +138,24 @@ impl Totals {
         }
         let neighbours = stage.neighbours().unwrap_or_default();
         if neighbours.merged_strands > 0 {
-            say(format_args!(
+            print_line(format_args!(
                 "same     {} strands are identical to others and share their contacts",
                 grouped(neighbours.merged_strands)
             ));
         }
         if neighbours.crowded_segments > 0 {
-            say(format_args!(
+            print_line(format_args!(
                 "crowded  {} segments had more neighbors at once than are tested; some contacts were missed",
                 grouped(neighbours.crowded_segments)
             ));
         }
         let stages: Vec<String> = self.stages().iter().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
-        say(format_args!("ms/frame {}", stages.join(", ")));
+        print_line(format_args!("ms/frame {}", stages.join(", ")));
         if self.sent > 0 {
-            say(format_args!("sent     {:.1} MB per frame to the GPU", self.sent_a_frame() * 1e-6));
+            print_line(format_args!("sent     {:.1} MB per frame to the GPU", self.sent_a_frame() * 1e-6));
         }
         let contact = stage.measure();
-        say(format_args!(
+        print_line(format_args!(
             "contact  {} points inside at the end, at most {:.3} mm deep; {} segments deeper than 1 mm, at most {:.3} mm deep ({:.3} mm in the meshes)",
             grouped(contact.inside_points),
             contact.depth_inside() * 1e3,
@@ -164,23 +164,26 @@ impl Totals {
             contact.surface_depth * 1e3
         ));
         if contact.started_inside_points > 0 {
-            say(format_args!(
+            print_line(format_args!(
                 "         {} of these points started inside and are no deeper, at most {:.3} mm deep",
                 grouped(contact.started_inside_points),
                 contact.started_inside_depth * 1e3
             ));
         }
         if contact.held_segments > 0 {
-            say(format_args!(
+            print_line(format_args!(
                 "         {} more segments start inside, held there by the root, at most {:.3} mm deep",
                 grouped(contact.held_segments),
                 contact.held_depth * 1e3
             ));
         }
         if self.reset_strands > 0 {
-            say(format_args!("reset    {} strands became non-finite and were reset", self.reset_strands));
+            print_line(format_args!(
+                "reset    {} strands became non-finite and were reset",
+                self.reset_strands
+            ));
         }
-        say(format_args!("took     {:.1} s", self.began.elapsed().as_secs_f64()));
+        print_line(format_args!("took     {:.1} s", self.began.elapsed().as_secs_f64()));
     }
 
     /// Returns the summary as JSON; the keys of `extra` come first.
@@ -254,7 +257,7 @@ mod tests {
     use super::{frames, grouped};
 
     #[test]
-    fn numbers_are_written_as_people_do() {
+    fn thousands_are_separated_by_commas() {
         let cases = [(0, "0"), (999, "999"), (1000, "1,000"), (123_456, "123,456"), (3_200_000, "3,200,000")];
         for (n, text) in cases {
             assert_eq!(grouped(n), text);

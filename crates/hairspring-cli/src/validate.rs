@@ -4,7 +4,7 @@ mod report;
 mod table;
 
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
     interrupt, output,
     report::number,
@@ -76,7 +76,7 @@ pub struct Options {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(3..=1024), help_heading = "How it is simulated")]
     points: Option<u32>,
 
-    /// Substeps per frame of 1/60 s, 1 to 1024 [default: 4 at rest, 8 in motion]
+    /// Substeps per frame of 1/60 s, 1 to 1024 [default: 4; pendulum: 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1024), help_heading = "How it is simulated")]
     substeps: Option<u32>,
 
@@ -165,7 +165,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let outcomes: Vec<Outcome> =
         jobs.par_iter().flat_map_iter(|job| job.case.run(&job.values, job.method)).collect();
     if options.json {
-        say(Value::Array(outcomes.iter().map(as_json).collect()));
+        print_line(Value::Array(outcomes.iter().map(as_json).collect()));
     } else {
         print_table(&outcomes);
     }
@@ -212,13 +212,13 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
     }
     let mut jobs = Vec::new();
     for case in cases {
-        let asked = options.points.filter(|_| !case.points_fixed || options.case.is_some());
-        if case.points_fixed && asked.is_some_and(|points| points != case.method.points) {
+        let requested = options.points.filter(|_| !case.points_fixed || options.case.is_some());
+        if case.points_fixed && requested.is_some_and(|points| points != case.method.points) {
             let text = format!("the case {} needs a strand of {} points", case.name, case.method.points);
             return Err(Fault::Usage(text));
         }
         let method = Method {
-            points: asked.unwrap_or(case.method.points),
+            points: requested.unwrap_or(case.method.points),
             substeps: options.substeps.unwrap_or(case.method.substeps),
             model: chosen("model", &options.model, &Model::ALL, Model::name)?.unwrap_or(case.method.model),
             integrator: chosen("integrator", &options.integrator, &Integrator::ALL, Integrator::name)?
@@ -248,18 +248,18 @@ fn jobs(options: &Options) -> Result<Vec<Job>, Fault> {
     Ok(jobs)
 }
 
-/// Finds the setting called `asked` in `all`.
+/// Finds the setting called `requested` in `all`.
 fn chosen<T: Copy>(
     what: &str,
-    asked: &Option<String>,
+    requested: &Option<String>,
     all: &[T],
     name: fn(T) -> &'static str,
 ) -> Result<Option<T>, Fault> {
-    let Some(asked) = asked else { return Ok(None) };
-    let found = all.iter().copied().find(|t| name(*t) == asked);
+    let Some(requested) = requested else { return Ok(None) };
+    let found = all.iter().copied().find(|t| name(*t) == requested);
     let there: Vec<&str> = all.iter().map(|t| name(*t)).collect();
     found.map(Some).ok_or_else(|| {
-        Fault::Usage(format!("unknown {what} '{asked}'; expected one of: {}", there.join(", ")))
+        Fault::Usage(format!("unknown {what} '{requested}'; expected one of: {}", there.join(", ")))
     })
 }
 
@@ -323,22 +323,22 @@ fn print_table(outcomes: &[Outcome]) {
             // Numbers are right-aligned.
             if (3..6).contains(&c) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
         });
-        say(cells.collect::<Vec<_>>().join("  ").trim_end());
+        print_line(cells.collect::<Vec<_>>().join("  ").trim_end());
     }
     let passed = outcomes.iter().filter(|o| o.pass()).count();
-    say(format_args!("{passed} of {} pass", outcomes.len()));
+    print_line(format_args!("{passed} of {} pass", outcomes.len()));
     // Reasons, printed once per case.
     let mut reasons: Vec<(&str, &str)> =
         outcomes.iter().filter_map(|o| Some((o.case, o.reason()?))).collect();
     reasons.dedup();
     for (case, reason) in reasons {
-        say(format_args!("{case}: {reason}"));
+        print_line(format_args!("{case}: {reason}"));
     }
 }
 
 /// An outcome as a row of the table.
 fn row(outcome: &Outcome) -> [String; 7] {
-    let told = |value: &Result<f64, _>| value.map_or("-".into(), number);
+    let formatted = |value: &Result<f64, _>| value.map_or("-".into(), number);
     let verdict = match (&outcome.measured, &outcome.reference) {
         (_, Ok(0.0)) if outcome.pass() => format!("pass (below {})", number(outcome.tolerance)),
         (Ok(_), Ok(0.0)) => format!("FAIL (over {})", number(outcome.tolerance)),
@@ -351,8 +351,8 @@ fn row(outcome: &Outcome) -> [String; 7] {
         outcome.case.into(),
         parameters(outcome),
         outcome.quantity.into(),
-        told(&outcome.measured),
-        told(&outcome.reference),
+        formatted(&outcome.measured),
+        formatted(&outcome.reference),
         outcome.relative_error().map_or("-".into(), |e| format!("{:.2} %", e * 100.0)),
         verdict,
     ]

@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn edges_in_any_order_and_direction_are_polylines_from_their_first_end() {
+    fn edges_in_any_order_and_direction_form_polylines() {
         let chains = join(&[[5, 1], [1, 7], [20, 30], [0, 7], [60, 30]]).unwrap();
         assert_eq!(chains.order, [0, 7, 1, 5, 20, 30, 60]);
         assert_eq!(chains.offsets, [0, 4, 7]);

@@ -204,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn attributes_of_strands_are_those_of_their_first_point() {
+    fn strands_have_the_attributes_of_their_first_point() {
         let table = "strand,x,y,z,radius,group,guide,stiffness,friction,density,u,v\n\
                      a,0,0,0,1e-5,top,1,2,0.5,1,0.25,0.75\na,0,1,0,2e-5,top,1,9,9,9,9,9\n\
                      b,1,0,0,3e-5,side,0,3,1,1,0.5,0.5\nb,1,1,0,4e-5,,,0,0,0,0,0\n\
@@ -245,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_named_with_its_line() {
+    fn errors_name_the_line_and_the_column() {
         let error = |text: &str| parse(text.as_bytes()).unwrap_err().to_string();
         assert!(error("strand,x,y\n").contains("no column `z`"));
         assert!(error("strand,x,y,z\n0,1,2\n").contains("3 columns"));

@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_picture_or_larger_than_its_file_allows_is_an_error() {
+    fn invalid_and_oversized_pictures_are_refused() {
         for data in [&b""[..], b"no picture", &png([[9; 3]; 4])[..40]] {
             let text = Picture::parse(data).unwrap_err().to_string();
             assert!(text.contains("export it as PNG or JPEG"), "{text}");

@@ -55,7 +55,7 @@ mod tests {
     use hairspring::forces::grab::Grab;
 
     #[test]
-    fn a_path_is_straight_between_its_keys_and_still_outside() {
+    fn a_path_is_linear_between_its_keys_and_constant_outside() {
         let grab = Grab { center: Vec3::ZERO, radius: 0.1, pull: 60.0, damping: 1.0 };
         let mut hand = Hand::new(Manipulator::Grab(grab));
         assert_eq!(hand.moved(3.0), Vec3::ZERO);

@@ -134,7 +134,7 @@ mod tests {
     /// measurements leads far beyond the actual threshold. The numbers were measured on a truss with the
     /// smallest possible twisting stiffness.
     #[test]
-    fn a_load_that_was_not_held_is_not_foreseen() {
+    fn the_threshold_of_an_imperfect_strand_is_not_extrapolated() {
         let measured = [
             (1.6, 0.1632),
             (2.3485, 0.2396),
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn what_never_gives_way_has_no_threshold() {
+    fn a_structure_that_never_buckles_has_no_threshold() {
         assert_eq!(threshold(1.0, 10.0, |_| Ok(Some(3.0))), Err(Failure::NoThreshold));
         assert_eq!(threshold(1.0, 10.0, |x| Ok(Some(3.0 + x))), Err(Failure::NoThreshold));
     }

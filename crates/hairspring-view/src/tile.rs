@@ -334,7 +334,7 @@ mod tests {
     /// For any fraction and any number of blocks per strand, the drawn strands with their larger widths add
     /// up to all strands, over any thousand neighbors and for any block of each.
     #[test]
-    fn strands_that_are_drawn_stand_for_all() {
+    fn drawn_strands_keep_the_total_width_of_all() {
         for (through, widest) in [(1.0, 0.1), (0.4, 0.1), (0.1, 0.1), (0.01, 0.1), (0.01, 0.6), (0.2, 3.0)] {
             let share = thinned(through, widest);
             assert!(widest.min(1.0) / share <= 1.0, "none is wider than a pixel");

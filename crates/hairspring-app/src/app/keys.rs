@@ -1,7 +1,7 @@
 //! Keyboard shortcuts, and the menu bar.
 
 use super::App;
-use crate::{panel::files::For, record::Kind, session::Action, view::Hand};
+use crate::{panel::files::For, record::Kind, session::Action, view::Tool};
 use eframe::egui::{self, Key, Modifiers, RichText, Ui};
 
 impl App {
@@ -17,7 +17,7 @@ impl App {
             actions.push(Action::Undo);
         }
         if pressed(Modifiers::COMMAND, Key::O) {
-            self.files.ask(For::Open, None);
+            self.files.open_dialog(For::Open, None);
         }
         if pressed(Modifiers::COMMAND, Key::S) {
             self.save(actions);
@@ -41,7 +41,7 @@ impl App {
             actions.push(Action::Head(glam::Vec3::ZERO));
         }
         if pressed(Modifiers::NONE, Key::F12) {
-            self.files.ask(For::Record(Kind::Still), None);
+            self.files.open_dialog(For::Record(Kind::Still), None);
         }
         if pressed(Modifiers::NONE, Key::F) {
             self.view.orbit = None;
@@ -57,9 +57,9 @@ impl App {
         // On many keyboards the question mark is on a shifted key.
         self.open.help ^=
             pressed(Modifiers::SHIFT, Key::Questionmark) || pressed(Modifiers::SHIFT, Key::Slash);
-        for (hand, _, key, _) in Hand::ALL {
+        for (tool, _, key, _) in Tool::ALL {
             if pressed(Modifiers::NONE, key) {
-                self.view.hand = hand;
+                self.view.tool = tool;
             }
         }
         if pressed(Modifiers::NONE, Key::Escape) {
@@ -78,7 +78,7 @@ impl App {
     fn save(&mut self, actions: &mut Vec<Action>) {
         match self.session.document().file() {
             Some(_) => actions.push(Action::Save(None)),
-            None => self.files.ask(For::Save, None),
+            None => self.files.open_dialog(For::Save, None),
         }
     }
 
@@ -90,20 +90,20 @@ impl App {
                     self.open.presets = true;
                 }
                 if ui.button("Open…").clicked() {
-                    self.files.ask(For::Open, None);
+                    self.files.open_dialog(For::Open, None);
                 }
                 if ui.button("Save").clicked() {
                     self.save(actions);
                 }
                 if ui.button("Save as…").clicked() {
-                    self.files.ask(For::Save, self.session.document().file());
+                    self.files.open_dialog(For::Save, self.session.document().file());
                 }
                 ui.separator();
                 if ui.button("Export hair…").clicked() {
-                    self.files.ask(For::Export, None);
+                    self.files.open_dialog(For::Export, None);
                 }
                 if ui.button("Bake…").clicked() {
-                    self.files.ask_for_bake(self.session.length());
+                    self.files.open_bake_dialog(self.session.length());
                 }
                 ui.separator();
                 if ui.button("Quit").clicked() {
@@ -113,7 +113,7 @@ impl App {
             ui.menu_button("Record", |ui| {
                 for kind in Kind::ALL {
                     if ui.button(format!("{}…", kind.title())).clicked() {
-                        self.files.ask(For::Record(kind), None);
+                        self.files.open_dialog(For::Record(kind), None);
                     }
                 }
             });

@@ -30,8 +30,8 @@ impl App {
 
     /// Holds back a close of the window that would lose changes.
     pub(super) fn hold_back_close(&mut self, ctx: &egui::Context) {
-        let asked = ctx.input(|i| i.viewport().close_requested());
-        if asked && !self.closes && self.session.document().is_changed() {
+        let requested = ctx.input(|i| i.viewport().close_requested());
+        if requested && !self.closes && self.session.document().is_changed() {
             ctx.send_viewport_cmd(egui::ViewportCommand::CancelClose);
             self.leaving = Some(Leaving { to: To::Close, saves: false });
         }
@@ -82,7 +82,7 @@ impl App {
         } else if save {
             match self.session.document().file() {
                 Some(_) => self.act(Action::Save(None)),
-                None => self.files.ask(For::Save, None),
+                None => self.files.open_dialog(For::Save, None),
             }
             if let Some(leaving) = &mut self.leaving {
                 leaving.saves = true;

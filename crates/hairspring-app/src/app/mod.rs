@@ -177,7 +177,7 @@ impl App {
     }
 
     /// Shows a message. An error that a line of the script causes is also printed with its place.
-    fn say(&mut self, text: impl Into<String>, wrong: bool) {
+    fn set_message(&mut self, text: impl Into<String>, wrong: bool) {
         let text = text.into();
         if let Some(place) = self.script.place().filter(|_| wrong) {
             eprintln!("error: {place}: {text}");
@@ -193,10 +193,10 @@ impl App {
             Ok(()) => {
                 self.view.forget |= self.session.opened() != before;
                 if let Some(file) = self.session.document().file().filter(|_| saves) {
-                    self.say(format!("saved {}", file.display()), false);
+                    self.set_message(format!("saved {}", file.display()), false);
                 }
             }
-            Err(why) => self.say(why.to_string(), true),
+            Err(why) => self.set_message(why.to_string(), true),
         }
     }
 
@@ -206,17 +206,17 @@ impl App {
         match recovery.keep(self.session.document()) {
             Ok(Some(wait)) => ctx.request_repaint_after(wait),
             Ok(None) => {}
-            Err(why) => self.say(why.to_string(), true),
+            Err(why) => self.set_message(why.to_string(), true),
         }
     }
 
-    fn record(&mut self, ctx: &egui::Context, wish: RecordRequest) {
+    fn record(&mut self, ctx: &egui::Context, request: RecordRequest) {
         let Some(snapshot) = self.session.latest() else { return };
         let wake = ctx.clone();
         let gpu = self.painters[0].gpu();
-        match Recorder::new(wish, &mut self.session, &snapshot, gpu, move || wake.request_repaint()) {
+        match Recorder::new(request, &mut self.session, &snapshot, gpu, move || wake.request_repaint()) {
             Ok(recorder) => self.recorder = Some(recorder),
-            Err(why) => self.say(why.to_string(), true),
+            Err(why) => self.set_message(why.to_string(), true),
         }
     }
 
@@ -225,15 +225,15 @@ impl App {
         let snapshot = self.session.latest();
         let Some(stage) = snapshot.as_ref().and_then(|snapshot| snapshot.stages.first()) else { return };
         match bake::export(path, stage) {
-            Ok(said) => self.say(said, false),
-            Err(why) => self.say(why.to_string(), true),
+            Ok(message) => self.set_message(message, false),
+            Err(why) => self.set_message(why.to_string(), true),
         }
     }
 
     /// Starts a bake, for which the scene pauses.
     fn bake(&mut self, ctx: &egui::Context, request: BakeRequest) {
         if self.baker.is_some() {
-            return self.say("a bake is running already: stop it, or wait for its end", true);
+            return self.set_message("a bake is running already: stop it, or wait for its end", true);
         }
         let wake = ctx.clone();
         let (source, threads) = (self.session.document().source(), self.painters[0].spared());
@@ -242,24 +242,24 @@ impl App {
                 self.act(Action::Play(false));
                 self.baker = Some(baker);
             }
-            Err(why) => self.say(why.to_string(), true),
+            Err(why) => self.set_message(why.to_string(), true),
         }
     }
 
     /// Receives the end of a bake.
-    fn hear_of_bake(&mut self) {
+    fn poll_bake(&mut self) {
         let Some(outcome) = self.baker.as_mut().and_then(Baker::outcome) else { return };
         self.baker = None;
         match outcome {
-            Ok(said) => self.say(said, false),
-            Err(why) => self.say(why.to_string(), true),
+            Ok(message) => self.set_message(message, false),
+            Err(why) => self.set_message(why.to_string(), true),
         }
     }
 
     fn windows(&mut self, ctx: &egui::Context, actions: &mut Vec<Action>) {
         match self.files.show(ctx) {
             Some(Decision::Do(action)) => self.request(action),
-            Some(Decision::Record(wish)) => self.record(ctx, wish),
+            Some(Decision::Record(request)) => self.record(ctx, request),
             Some(Decision::Export(path)) => self.export(&path),
             Some(Decision::Bake(request)) => self.bake(ctx, request),
             None => {}
@@ -288,14 +288,14 @@ impl eframe::App for App {
         if self.leaving.is_none() {
             self.keys(ctx, &mut actions);
         }
-        self.hear_of_shot();
-        self.hear_of_bake();
+        self.poll_shot();
+        self.poll_bake();
         self.follow_script(ctx, snapshot.as_ref());
         if let Some(why) = self.session.error() {
-            self.say(why.to_string(), true);
+            self.set_message(why.to_string(), true);
         }
         if let Some(why) = self.session.restart_if_dead() {
-            self.say(why.to_string(), true);
+            self.set_message(why.to_string(), true);
             // The new thread counts steps from 0, so what waits for a step would wait for long.
             self.waits = 0;
             if let Some(recorder) = self.recorder.take() {
@@ -339,7 +339,7 @@ impl eframe::App for App {
             }
         }
         self.windows(ctx, &mut actions);
-        self.tell(ctx);
+        self.show_status(ctx);
         if ctx.input(|i| i.pointer.any_released()) {
             actions.push(Action::Rest);
         }
@@ -354,11 +354,11 @@ impl eframe::App for App {
         self.ask_before_leaving(ctx);
         self.keep_changes(ctx);
         if let (Some(mut recorder), Some(snapshot)) = (self.recorder.take(), &snapshot) {
-            let sights = snapshot.stages.iter().map_while(|s| self.view.sight(s, 1.0)).collect();
-            let ended = recorder.advance(&mut self.session, snapshot, sights);
+            let views = snapshot.stages.iter().map_while(|s| self.view.view_parameters(s, 1.0)).collect();
+            let ended = recorder.advance(&mut self.session, snapshot, views);
             match ended {
-                Some(Ok(said)) => self.say(said, false),
-                Some(Err(why)) => self.say(why.to_string(), true),
+                Some(Ok(message)) => self.set_message(message, false),
+                Some(Err(why)) => self.set_message(why.to_string(), true),
                 None => self.recorder = Some(recorder),
             }
         }

@@ -33,22 +33,22 @@ impl App {
         self.painters.truncate(count);
         let width = whole.width() / count as f32;
         let aspect = width / whole.height().max(1.0);
-        self.view.meet(&self.session, snapshot, aspect);
+        self.view.follow_camera(&self.session, snapshot, aspect);
         if self.view.orbit.is_none() {
             self.view.frame(&self.session, snapshot, aspect);
         }
         let guides = self.session.shown() == Some(Value::Guide);
-        for (k, scenery) in snapshot.stages.iter().enumerate() {
+        for (k, stage) in snapshot.stages.iter().enumerate() {
             let left = whole.left() + width * k as f32;
             let rect =
                 egui::Rect::from_min_size(egui::pos2(left, whole.top()), egui::vec2(width, whole.height()));
             let response = ui.interact(rect, ui.scope_id().with(("picture", k)), Sense::click_and_drag());
             if k == 0 {
                 self.rect = rect;
-                self.view.follow_range(scenery, guides);
+                self.view.follow_range(stage, guides);
             }
             let moment = self.painters[k].moment(ui.ctx(), snapshot);
-            let seen = moment.stages.get(k).unwrap_or(scenery);
+            let seen = moment.stages.get(k).unwrap_or(stage);
             // Handles belong to the scene whose parameters are shown.
             let own = (k == 1) == self.session.on_second() && self.view.overlays.handles;
             let handles = match (self.view.lens(rect), self.view.orbit) {
@@ -58,13 +58,15 @@ impl App {
                 _ => Vec::new(),
             };
             self.view.touch(ui, &response, snapshot, &handles, actions);
-            let (Some(sight), Some(lens)) = (self.view.sight(scenery, aspect), self.view.lens(rect)) else {
+            let (Some(parameters), Some(lens)) =
+                (self.view.view_parameters(stage, aspect), self.view.lens(rect))
+            else {
                 continue;
             };
             let pixels = ui.ctx().pixels_per_point();
             let size = [rect.width(), rect.height()].map(|s| ((s * pixels).round() as u32).clamp(16, 8192));
             let painter = ui.painter_at(rect);
-            if let Some(shape) = self.painters[k].draw(ui.ctx(), snapshot, k, &sight, (rect, size)) {
+            if let Some(shape) = self.painters[k].draw(ui.ctx(), snapshot, k, &parameters, (rect, size)) {
                 painter.add(shape);
             }
             let picked =

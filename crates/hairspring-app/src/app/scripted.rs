@@ -49,7 +49,7 @@ impl App {
             Line::New(style) => self.act(Action::New(builtin_text(&style, Some(self.hairs)))),
             Line::Open(path) => self.act(Action::Open(path)),
             Line::Save(path) => self.act(Action::Save(Some(path))),
-            Line::Hand(hand) => self.view.hand = hand,
+            Line::Tool(tool) => self.view.tool = tool,
             Line::Drag(from, to, frames) => {
                 self.finger.hold(self.place(from), self.place(to), frames);
                 self.finger.release();
@@ -127,11 +127,11 @@ impl App {
     }
 
     /// Receives the result of writing a picture of the window.
-    pub(super) fn hear_of_shot(&mut self) {
+    pub(super) fn poll_shot(&mut self) {
         let Some(outcome) = self.shot.as_ref().and_then(|shot| shot.try_recv().ok()) else { return };
         self.shot = None;
         if let Err(why) = outcome {
-            self.say(why.to_string(), true);
+            self.set_message(why.to_string(), true);
         }
     }
 }

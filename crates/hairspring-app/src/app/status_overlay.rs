@@ -12,7 +12,7 @@ const LEGEND: f32 = 190.0;
 
 impl App {
     /// Shows the progress of a recording, and the last message.
-    pub(super) fn tell(&mut self, ctx: &egui::Context) {
+    pub(super) fn show_status(&mut self, ctx: &egui::Context) {
         let corner = self.whole.min + egui::vec2(20.0, 40.0);
         if let Some(recorder) = &self.recorder {
             let (done, all) = recorder.progress();
@@ -29,8 +29,8 @@ impl App {
             );
             if stopped && let Some(recorder) = self.recorder.take() {
                 match recorder.stop(&mut self.session) {
-                    Ok(said) => self.say(said, false),
-                    Err(why) => self.say(why.to_string(), true),
+                    Ok(message) => self.set_message(message, false),
+                    Err(why) => self.set_message(why.to_string(), true),
                 }
             }
         }
@@ -121,7 +121,7 @@ pub(super) fn legend(
     rect: egui::Rect,
     value: Value,
     view: &View,
-    scenery: &StageSnapshot,
+    stage: &StageSnapshot,
 ) {
     let at = rect.right_top() + egui::vec2(-LEGEND, 14.0);
     let text = |place: egui::Pos2, align, text: String| {
@@ -135,7 +135,7 @@ pub(super) fn legend(
     if value == Value::Guide {
         return;
     }
-    if value == Value::Density && scenery.volume.is_none() {
+    if value == Value::Density && stage.volume.is_none() {
         let right = at + egui::vec2(LEGEND - 20.0, 18.0);
         text(right, egui::Align2::RIGHT_TOP, "known with a volume method (Volume)".into());
         return;

@@ -59,7 +59,7 @@ impl Document {
         atomically(&path, |out| out.write_all(text.as_bytes()))
             .map_err(|why| AppError::new(format!("{} could not be written: {why}", path.display())))?;
         self.history.rename(|text| move_to(text))?;
-        self.said = table(&text)?;
+        self.parsed_text = table(&text)?;
         self.draft.text.clone_from(&text);
         (self.path, self.saved, self.on_disk) = (path, text, true);
         Ok(())
@@ -116,7 +116,7 @@ mod tests {
     const SCENE: &str = "[[groom]]\nfile = \"a.hair\"\n\n[[collider]]\nshape.sphere = { center = [0.0, 1.0, 0.0], radius = 0.1 }\n";
 
     #[test]
-    fn what_is_saved_elsewhere_names_its_files_from_there_and_so_does_what_is_undone() {
+    fn saving_in_another_folder_adjusts_the_paths_of_named_files_and_of_undo_steps() {
         let folder = tempfile::tempdir().unwrap();
         let [from, to] = ["from", "to"].map(|name| folder.path().join(name));
         [&from, &to].into_iter().for_each(|path| std::fs::create_dir(path).unwrap());
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn a_body_that_takes_the_place_of_the_built_in_head_has_a_coat_and_leaves_other_hair() {
+    fn a_body_that_replaces_the_built_in_head_gets_a_coat_and_keeps_other_hair() {
         let head = "name = \"Built-in head\"\n[builtin]\nstyle = \"wavy\"\n\n[[collider]]\nshape.sphere = { center = [0.0, 1.0, 0.0], radius = 0.1 }\n";
         for (text, coat) in [(head, true), (SCENE, false)] {
             let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();

@@ -12,9 +12,9 @@ impl Document {
         let key = |name: &str| Key::top("material").entry(name).field(field);
         let mut edited = parsed(self.text())?;
         let Some(place) = self.groom_key(groom).map(|key| key.field("material")) else {
-            return Err(AppError::new(format!("the scene says nothing of groom {groom}")));
+            return Err(AppError::new(format!("the scene file has no entry for groom {groom}")));
         };
-        let text = &self.said;
+        let text = &self.parsed_text;
         let list = self.materials_of(groom);
         let at = group.min(list.len().saturating_sub(1));
         if let Some(name) = self.material_of(groom, group) {
@@ -56,7 +56,7 @@ impl Document {
 
     /// Names of the materials of groom `groom` as written in the text.
     fn materials_of(&self, groom: usize) -> Vec<String> {
-        match self.groom_key(groom).and_then(|key| key.field("material").look_up(&self.said)) {
+        match self.groom_key(groom).and_then(|key| key.field("material").look_up(&self.parsed_text)) {
             Some(toml::Value::String(name)) => vec![name.clone()],
             Some(toml::Value::Array(names)) => {
                 names.iter().filter_map(|n| n.as_str().map(str::to_owned)).collect()
@@ -70,7 +70,7 @@ impl Document {
     pub fn material_of(&self, groom: usize, group: usize) -> Option<String> {
         let mut list = self.materials_of(groom);
         let name = (!list.is_empty()).then(|| list.swap_remove(group.min(list.len() - 1)))?;
-        self.said.get("material")?.get(&name).map(|_| name)
+        self.parsed_text.get("material")?.get(&name).map(|_| name)
     }
 
     /// Key of groom `groom` in the text; `None` for the brows of the built-in head, which are not in the
@@ -98,7 +98,7 @@ impl Document {
     }
 
     fn listed_grooms(&self) -> usize {
-        self.said.get("groom").and_then(toml::Value::as_array).map_or(0, Vec::len)
+        self.parsed_text.get("groom").and_then(toml::Value::as_array).map_or(0, Vec::len)
     }
 }
 

@@ -55,7 +55,7 @@ pub struct Document {
     dragged: Vec<Key>,
     settings: Scene,
     /// The text as a parsed table, shared by everything that reads it.
-    said: toml::Table,
+    parsed_text: toml::Table,
     effective: toml::Table,
     /// Reference values: at the time of opening, and the defaults.
     opened: Reference,
@@ -98,8 +98,8 @@ impl Document {
     /// Creates a document for an unsaved scene. Files are named relative to the folder of `path`.
     pub fn new(path: &Path, text: String) -> Result<Self, AppError> {
         let settings = read_settings(path, &text)?;
-        let said = table(&text)?;
-        let effective = effective(&settings, &said);
+        let parsed_text = table(&text)?;
+        let effective = effective(&settings, &parsed_text);
         Ok(Self {
             path: path.to_owned(),
             on_disk: false,
@@ -107,12 +107,12 @@ impl Document {
             draft: Draft::new(text),
             history: History::default(),
             dragged: Vec::new(),
-            first: [said.clone(), effective.clone()],
+            first: [parsed_text.clone(), effective.clone()],
             effective,
-            opened: Reference::opened(path, &said),
-            defaults: Reference::library(path, &said),
+            opened: Reference::opened(path, &parsed_text),
+            defaults: Reference::library(path, &parsed_text),
             settings,
-            said,
+            parsed_text,
         })
     }
 
@@ -164,8 +164,8 @@ impl Document {
     }
 
     /// The parsed text.
-    pub fn said(&self) -> &toml::Table {
-        &self.said
+    pub fn parsed_text(&self) -> &toml::Table {
+        &self.parsed_text
     }
 
     /// The text.
@@ -267,10 +267,10 @@ impl Document {
     fn put(&mut self, draft: Draft) -> Result<Change, AppError> {
         let settings = read_settings(&self.path, &draft.text)?;
         let same = same_geometry(&self.draft.text, &draft.text);
-        self.said = table(&draft.text)?;
-        self.effective = effective(&settings, &self.said);
-        self.opened.follow(&self.path, &self.said);
-        self.defaults.follow(&self.path, &self.said);
+        self.parsed_text = table(&draft.text)?;
+        self.effective = effective(&settings, &self.parsed_text);
+        self.opened.follow(&self.path, &self.parsed_text);
+        self.defaults.follow(&self.path, &self.parsed_text);
         (self.settings, self.draft) = (settings, draft);
         Ok(if same { Change::Settings } else { Change::Geometry })
     }

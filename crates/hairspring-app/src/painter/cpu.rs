@@ -84,7 +84,7 @@ const SMOOTHNESS: f32 = 0.3;
 struct Job {
     snapshot: Arc<Snapshot>,
     stage: usize,
-    sight: ViewParameters,
+    view: ViewParameters,
     size: [u32; 2],
     level: usize,
 }
@@ -114,11 +114,11 @@ impl Brush {
             self.shadows = None;
         }
         let (renderer, _) = self.renderer.as_mut()?;
-        let scenery = job.snapshot.stages.get(job.stage)?;
-        let these = (job.snapshot.scene, job.level, job.sight.lit_for);
+        let stage_snapshot = job.snapshot.stages.get(job.stage)?;
+        let these = (job.snapshot.scene, job.level, job.view.lit_for);
         let again = job.level > 0 && self.shadows == Some(these);
         self.shadows = (!again).then_some(these);
-        let image = scenery.draw(&job.sight, false, |frame| {
+        let image = stage_snapshot.draw(&job.view, false, |frame| {
             if again { renderer.draw_on(frame).clone() } else { renderer.draw(frame).clone() }
         });
         Some(image)
@@ -222,15 +222,15 @@ impl CpuPainter {
     }
 
     /// Requests a picture of `size` pixels, unless one is being drawn.
-    pub fn ask(
+    pub fn request(
         &mut self,
         ctx: &egui::Context,
         snapshot: &Arc<Snapshot>,
         stage: usize,
-        sight: &ViewParameters,
+        view: &ViewParameters,
         size: [u32; 2],
     ) {
-        let wanted = (snapshot.scene, snapshot.number, *sight, size);
+        let wanted = (snapshot.scene, snapshot.number, *view, size);
         let same = self.shown == Some(wanted);
         if !same {
             self.moved = Instant::now();
@@ -243,17 +243,17 @@ impl CpuPainter {
         if !self.busy.load(Relaxed) && (!same || (rested && self.seen > 0)) {
             let Level { scale, shadow: [shadow_voxels, shadow_texels], .. } = LEVELS[level];
             let side = |s: u32| ((s as f32 * scale) as u32).max(16);
-            let hairs = snapshot.stages.get(stage).map_or(0, |scenery| scenery.still.counts[1]);
-            let every = LEVELS[level].every(hairs).max(sight.every);
-            let smoothness = if every > 1 { SMOOTHNESS } else { sight.quality.smoothness };
+            let hairs = snapshot.stages.get(stage).map_or(0, |stage_snapshot| stage_snapshot.still.counts[1]);
+            let every = LEVELS[level].every(hairs).max(view.every);
+            let smoothness = if every > 1 { SMOOTHNESS } else { view.quality.smoothness };
             let wisp = every.min(WISP) as u32;
             let job = Job {
                 snapshot: snapshot.clone(),
                 stage,
-                sight: ViewParameters {
+                view: ViewParameters {
                     every,
                     quality: Quality { shadow_voxels, shadow_texels, smoothness, wisp },
-                    ..*sight
+                    ..*view
                 },
                 size: size.map(side),
                 level,
@@ -293,10 +293,10 @@ impl CpuPainter {
                 *texture = Some(ctx.load_texture("hair", image, TextureOptions::LINEAR));
             }
         }
-        let Job { level, snapshot, sight, .. } = done.job;
+        let Job { level, snapshot, view, .. } = done.job;
         self.pace.tick(level != self.level);
         self.took = if level == self.seen { smooth(self.took, done.took) } else { done.took };
-        (self.seen, self.every) = (level, sight.every);
+        (self.seen, self.every) = (level, view.every);
         self.moment = Some(snapshot);
         if level == self.level {
             // The level is refined only if the picture surely stays within the budget, so that it does not

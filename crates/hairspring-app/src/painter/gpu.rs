@@ -53,20 +53,20 @@ impl GpuPainter {
         &mut self,
         snapshot: &Snapshot,
         stage: usize,
-        sight: &ViewParameters,
+        view: &ViewParameters,
         size: [u32; 2],
     ) -> Option<TextureId> {
-        let scenery = snapshot.stages.get(stage)?;
-        let wanted = (snapshot.scene, snapshot.number, *sight, size);
+        let stage_snapshot = snapshot.stages.get(stage)?;
+        let wanted = (snapshot.scene, snapshot.number, *view, size);
         if self.shown != Some(wanted) {
             // Colors of values change in place, and another scene may have its arrays at the same addresses.
             let another = self.shown.is_none_or(|shown| shown.0 != snapshot.scene);
-            if another || self.valued || !scenery.values.is_empty() {
+            if another || self.valued || !stage_snapshot.values.is_empty() {
                 self.renderer.forget();
             }
-            self.valued = !scenery.values.is_empty();
+            self.valued = !stage_snapshot.values.is_empty();
             let began = std::time::Instant::now();
-            scenery.draw(sight, true, |frame| {
+            stage_snapshot.draw(view, true, |frame| {
                 self.renderer.draw(frame, size[0], size[1]);
             });
             self.took = began.elapsed().as_secs_f32();

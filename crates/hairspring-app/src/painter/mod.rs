@@ -103,13 +103,13 @@ impl Painter {
         ctx: &egui::Context,
         snapshot: &Arc<Snapshot>,
         stage: usize,
-        sight: &ViewParameters,
+        view: &ViewParameters,
         (rect, size): (egui::Rect, [u32; 2]),
     ) -> Option<egui::Shape> {
         match self {
-            Self::Gpu(painter) => painter.draw(snapshot, stage, sight, size).map(|id| image(id, rect)),
+            Self::Gpu(painter) => painter.draw(snapshot, stage, view, size).map(|id| image(id, rect)),
             Self::Cpu(painter) => {
-                painter.ask(ctx, snapshot, stage, sight, size);
+                painter.request(ctx, snapshot, stage, view, size);
                 painter.shape(rect)
             }
         }

@@ -255,7 +255,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_is_written_as_plain_0() {
+    fn zero_is_formatted_as_plain_0() {
         assert_eq!([far_off(0.0), far_off(-2e-7)], ["0", "-2.00e-7"]);
         assert_eq!([-0.004, -0.006, 1.5].map(|x| plain(x, 1..=2)), ["0.0", "-0.01", "1.5"]);
     }

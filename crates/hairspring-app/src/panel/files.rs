@@ -140,7 +140,7 @@ const NO_FILE: &str = "The desktop's dialog returned no file. If none opened, th
 
 impl Files {
     /// Opens the dialog with a suggested path.
-    pub fn ask(&mut self, what: For, known: Option<&Path>) {
+    pub fn open_dialog(&mut self, what: For, known: Option<&Path>) {
         (self.open, self.note, self.own) = (Some(what), None, known.map(Path::to_owned));
         let current = std::env::current_dir().unwrap_or_default();
         let folder = match self.folder.path() {
@@ -158,9 +158,9 @@ impl Files {
     }
 
     /// Opens the dialog for a bake of a motion of this length [s].
-    pub fn ask_for_bake(&mut self, duration: Option<f64>) {
+    pub fn open_bake_dialog(&mut self, duration: Option<f64>) {
         self.frames = [1, self.rate.frames_of(duration)];
-        self.ask(For::Bake, None);
+        self.open_dialog(For::Bake, None);
     }
 
     /// Whether it is shown.
@@ -175,7 +175,7 @@ impl Files {
 
     /// Shows the dialog.
     pub fn show(&mut self, ctx: &egui::Context) -> Option<Decision> {
-        self.hear_of_desktop();
+        self.poll_desktop_dialog();
         let what = self.open?;
         let mut stays = true;
         let mut decision = None;
@@ -208,7 +208,7 @@ impl Files {
                         _ => "Write it",
                     };
                     let ready = !self.path.trim().is_empty();
-                    // An existing file is only replaced by the button that says so.
+                    // An existing file is only replaced by the button `Replace it`.
                     let at_once = (entered || twice) && ready && !replaces;
                     if ui.add_enabled(ready, egui::Button::new(go)).clicked() || at_once {
                         decision = Some(self.decide(what));
@@ -311,7 +311,7 @@ impl Files {
     }
 
     /// Receives the result of the desktop's dialog.
-    fn hear_of_desktop(&mut self) {
+    fn poll_desktop_dialog(&mut self) {
         let Some(chosen) = self.chosen.take() else { return };
         match chosen.try_recv() {
             Ok(Some(path)) => self.path = path.display().to_string(),

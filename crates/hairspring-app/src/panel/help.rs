@@ -1,6 +1,6 @@
 //! The list of keyboard shortcuts, shown with `?`.
 
-use crate::view::Hand;
+use crate::view::Tool;
 use eframe::egui;
 
 /// Keys and their functions.
@@ -36,7 +36,7 @@ pub fn show(ctx: &egui::Context, open: &mut bool) {
                 ui.label(what);
                 ui.end_row();
             }
-            for (_, name, key, tip) in Hand::ALL {
+            for (_, name, key, tip) in Tool::ALL {
                 ui.monospace(key.name());
                 ui.vertical(|ui| {
                     ui.set_width(WIDTH);

@@ -42,10 +42,10 @@ impl History {
             self.moments.clear();
         }
         let now = (snapshot.scene, snapshot.step);
-        let Some(scenery) = snapshot.stages.first().filter(|_| self.last != now) else { return };
+        let Some(stage) = snapshot.stages.first().filter(|_| self.last != now) else { return };
         self.last = now;
         let ms = |d: std::time::Duration| 1e3 * d.as_secs_f64();
-        let (r, m, e) = (snapshot.report, scenery.measure, scenery.energy);
+        let (r, m, e) = (snapshot.report, stage.measure, stage.energy);
         self.moments.push_back(Moment {
             time: snapshot.step as f64 * f64::from(crate::player::STEP),
             took: [ms(r.body), ms(r.simulate), ms(r.follow), ms(snapshot.took)],
@@ -107,20 +107,20 @@ impl History {
 
 /// Shows the amount of hair and its figures.
 pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) {
-    let Some(scenery) = snapshot.stages.first() else { return };
-    let [guides, strands, points, all] = scenery.still.counts;
+    let Some(stage) = snapshot.stages.first() else { return };
+    let [guides, strands, points, all] = stage.still.counts;
     ui.label(format!(
         "{strands} hairs of {all} points; {guides} simulated with {points} points; {}",
-        scenery.still.instruction_set
+        stage.still.instruction_set
     ));
-    for (k, scenery) in snapshot.stages.iter().enumerate() {
-        let m = &scenery.measure;
+    for (k, stage) in snapshot.stages.iter().enumerate() {
+        let m = &stage.measure;
         let side = match snapshot.stages.len() {
             1 => "",
             _ if k == 0 => "left: ",
             _ => "right: ",
         };
-        let volume = scenery.volume.map(|v| format!(", volume {:.0} %", 100.0 * v.volume_ratio));
+        let volume = stage.volume.map(|v| format!(", volume {:.0} %", 100.0 * v.volume_ratio));
         ui.label(format!(
             "{side}stretch {:.2} % mean, {:.2} % worst; {} points and {} segments inside{}",
             100.0 * m.stretch_mean,

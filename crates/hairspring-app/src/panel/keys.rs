@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_are_written_as_they_were_read() {
+    fn keys_are_written_in_the_form_they_were_read_in() {
         for (list, name, text) in [
             ("hand", "path", "[[0.0, 0.1, 0.2, 0.3], [1.0, 0.4, 0.5, 0.6]]"),
             ("charged", "path", "[{ time = 1.0, center = [0.1, 0.2, 0.3] }]"),
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_key_does_not_say_is_0_and_a_new_one_lies_between() {
+    fn missing_values_of_a_key_are_0_and_an_inserted_key_is_interpolated() {
         let keys = keys_of("clip", "keys");
         let table: toml::Table =
             "x = [{ time = 0.0 }, { time = 1.0, rotation = [0, 90, 0] }]".parse().unwrap();

@@ -40,7 +40,7 @@ pub fn show(ctx: &egui::Context, found: &mut Vec<FoundScene>, actions: &mut Vec<
     }
 }
 
-/// A time as a person would say it.
+/// The age of a scene in words, such as `2 minutes`.
 fn age(age: Duration) -> String {
     let seconds = age.as_secs();
     let (number, unit) = match seconds {

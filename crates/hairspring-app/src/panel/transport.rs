@@ -3,7 +3,7 @@
 use crate::{
     session::{Action, Session},
     snapshot::Snapshot,
-    view::{Hand, View},
+    view::{Tool, View},
 };
 use eframe::egui::{self, Ui};
 use hairspring_scene::stage::Value;
@@ -52,17 +52,17 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
 /// Tools, color ramp and overlays.
 pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
-        for (hand, name, _, tip) in Hand::ALL {
-            if ui.selectable_label(view.hand == hand, name).on_hover_text(tip).clicked() {
-                view.hand = hand;
+        for (tool, name, _, tip) in Tool::ALL {
+            if ui.selectable_label(view.tool == tool, name).on_hover_text(tip).clicked() {
+                view.tool = tool;
             }
         }
-        if view.hand.reaches() {
+        if view.tool.reaches() {
             ui.add(
                 egui::Slider::new(&mut view.reach, 0.002..=0.2).logarithmic(true).suffix(" m").text("Radius"),
             );
         }
-        if view.hand == Hand::Palm {
+        if view.tool == Tool::Palm {
             ui.add(
                 egui::Slider::new(&mut view.length, 0.02..=2.0).logarithmic(true).suffix(" m").text("Length"),
             );

@@ -219,7 +219,7 @@ impl Parameter {
     }
 
     /// Key in the text; `None` if the text has no place for it yet.
-    pub fn said(&self, document: &Document, groom: usize, group: usize) -> Option<Key> {
+    pub fn text_key(&self, document: &Document, groom: usize, group: usize) -> Option<Key> {
         match self.of {
             Of::Scene => Some(self.key(0, 0)),
             Of::Groom => document.groom_key(groom).map(|key| key.field(self.name)),
@@ -234,9 +234,9 @@ impl Parameter {
     pub fn place(&self, document: &mut Document, groom: usize, group: usize) -> Result<Key, crate::AppError> {
         match self.of {
             Of::Material => document.own_material(groom, group, self.name),
-            _ => self
-                .said(document, groom, group)
-                .ok_or_else(|| crate::AppError::new(format!("the scene says nothing of groom {groom}"))),
+            _ => self.text_key(document, groom, group).ok_or_else(|| {
+                crate::AppError::new(format!("the scene file has no entry for groom {groom}"))
+            }),
         }
     }
 }

@@ -111,7 +111,7 @@ impl Player {
     }
 
     /// Sends a command. Has no effect if the thread has ended.
-    pub fn tell(&self, order: Order) {
+    pub fn send(&self, order: Order) {
         if let Some(orders) = &self.orders {
             // The thread ended by a panic that was reported.
             let _ = orders.send(order);

@@ -48,12 +48,12 @@ impl Work {
         if snapshot.scene != self.scene || snapshot.stages.len() != self.stages.len() {
             snapshot.stages = self.stages.iter().map(fresh).collect();
         }
-        for ((scenery, (stage, still)), measure) in
+        for ((stage_snapshot, (stage, still)), measure) in
             snapshot.stages.iter_mut().zip(&self.stages).zip(&self.measures)
         {
-            scenery.fill(stage, still, self.show);
-            (scenery.measure, scenery.energy) = *measure;
-            scenery.pushed = self.pushing.as_ref().map(Pushing::shown);
+            stage_snapshot.fill(stage, still, self.show);
+            (stage_snapshot.measure, stage_snapshot.energy) = *measure;
+            stage_snapshot.pushed = self.pushing.as_ref().map(Pushing::shown);
         }
         let picked = self.picked;
         snapshot.picked = picked.map(|p| (p, first.strand_figures(p.groom, p.strand)));

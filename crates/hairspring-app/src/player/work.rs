@@ -123,15 +123,15 @@ impl Work {
                     // Commands that have arrived in the meantime belong to the same moment.
                     let orders: Vec<Order> = std::iter::once(order).chain(self.inbox.try_iter()).collect();
                     let last = orders.iter().rposition(|o| matches!(o, Order::Open(..))).unwrap_or(0);
-                    let mut news = false;
+                    let mut changed = false;
                     for (k, order) in orders.into_iter().enumerate() {
                         match order {
                             // A scene that is replaced by a later command is not built.
                             Order::Open(..) if k < last => self.scene += 1,
-                            order => news |= self.obey(order),
+                            order => changed |= self.execute(order),
                         }
                     }
-                    if news {
+                    if changed {
                         self.publish();
                     }
                 }
@@ -155,7 +155,7 @@ impl Work {
     }
 
     /// Executes a command. Returns whether there is something new to show.
-    fn obey(&mut self, order: Order) -> bool {
+    fn execute(&mut self, order: Order) -> bool {
         match order {
             Order::Open(scene, other) => {
                 let stages: Result<Vec<_>, _> = [Some(scene), other]

@@ -6,7 +6,7 @@ mod verbs;
 
 pub use verbs::{VERBS, Verb};
 
-use crate::{AppError, key::Key, record::Kind, view::Hand};
+use crate::{AppError, key::Key, record::Kind, view::Tool};
 use glam::Vec2;
 use hairspring_scene::stage::{FrameRate, Value};
 use std::{collections::VecDeque, path::PathBuf};
@@ -41,7 +41,7 @@ pub enum Line {
     /// Saves the scene.
     Save(PathBuf),
     /// Selects a tool.
-    Hand(Hand),
+    Tool(Tool),
     /// Drags from one point of the picture to another in this number of frames.
     Drag(Vec2, Vec2, u32),
     /// Like `Drag`, but does not release.
@@ -131,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_verb_is_read_in_the_form_that_it_is_listed_in() {
+    fn every_verb_accepts_its_listed_example() {
         for verb in VERBS {
             let line = format!("{} {}", verb.name, verb.example);
             assert!(Script::parse("s", &line).is_ok_and(|script| script.lines.len() == 1), "{line}");
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_that_is_no_command_is_refused_by_its_file_and_number() {
+    fn an_invalid_line_is_refused_with_its_file_and_number() {
         for wrong in [
             "fly",
             "set a",
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn the_documented_verbs_are_those_that_the_parser_knows() {
+    fn the_documented_verbs_match_the_parser() {
         let page =
             std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/window.md")).unwrap();
         let (_, section) = page.split_once("## Scripts").expect("the page has a section about scripts");

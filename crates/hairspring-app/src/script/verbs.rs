@@ -1,7 +1,7 @@
 //! The commands of a script: their forms, their descriptions, and how they are read.
 
 use super::Line;
-use crate::{record::Kind, view::Hand};
+use crate::{record::Kind, view::Tool};
 use glam::Vec2;
 use hairspring_scene::stage::Value;
 use std::path::PathBuf;
@@ -89,7 +89,7 @@ pub const VERBS: &[Verb] = &[
         |r| {
             let (key, value) = r.two("a key and a value")?;
             let value =
-                value.parse().map_err(|_| format!("'{value}' is no value as a scene file has them"))?;
+                value.parse().map_err(|_| format!("'{value}' is not a valid value of a scene file"))?;
             Ok(Line::Set(key.parse()?, Some(value)))
         },
     ),
@@ -103,7 +103,7 @@ pub const VERBS: &[Verb] = &[
     verb("undo", "", "", "undoes one step", |_| Ok(Line::Undo)),
     verb("redo", "", "", "redoes one step", |_| Ok(Line::Redo)),
     verb("new", "STYLE", "curly", "opens the built-in head in a style", |r| Ok(Line::New(r.text.to_owned()))),
-    verb("open", "FILE", "shot.toml", "opens a file as *File > Open* does; unsaved changes are left", |r| {
+    verb("open", "FILE", "shot.toml", "opens a file as *File > Open* does, without asking to save", |r| {
         Ok(Line::Open(r.path()?))
     }),
     verb("save", "FILE", "shot.toml", "saves the scene", |r| Ok(Line::Save(r.path()?))),
@@ -113,9 +113,10 @@ pub const VERBS: &[Verb] = &[
         "grab",
         "selects a tool: `look`, `grab`, `ball`, `head`, `pick`, `comb` or `hand`",
         |r| {
-            let known = Hand::ALL.iter().find(|h| h.1.eq_ignore_ascii_case(r.text));
-            let names = || Hand::ALL.map(|h| h.1.to_lowercase()).join(", ");
-            Ok(Line::Hand(known.ok_or_else(|| format!("'{}' is no tool: {}", r.text, names()))?.0))
+            let known = Tool::ALL.iter().find(|tool| tool.1.eq_ignore_ascii_case(r.text));
+            let names = || Tool::ALL.map(|tool| tool.1.to_lowercase()).join(", ");
+            let unknown = || format!("unknown tool '{}'; expected one of: {}", r.text, names());
+            Ok(Line::Tool(known.ok_or_else(unknown)?.0))
         },
     ),
     verb(
@@ -143,7 +144,11 @@ pub const VERBS: &[Verb] = &[
                 return Ok(Line::Show(None));
             }
             let known = Value::ALL.into_iter().find(|v| v.name().eq_ignore_ascii_case(r.text));
-            Ok(Line::Show(Some(known.ok_or_else(|| format!("'{}' is nothing that colors show", r.text))?)))
+            let unknown = || {
+                let names = Value::ALL.map(|v| v.name().to_lowercase()).join(", ");
+                format!("unknown color '{}'; expected one of: natural, {names}", r.text)
+            };
+            Ok(Line::Show(Some(known.ok_or_else(unknown)?)))
         },
     ),
     verb("find", "TEXT", "wind", "searches for parameters, whose groups open", |r| {
@@ -201,7 +206,7 @@ pub const VERBS: &[Verb] = &[
     verb("pace", "", "", "prints the renderer, the pictures per second, and the time of a step", |_| {
         Ok(Line::Pace)
     }),
-    verb("quit", "", "", "closes the window; unsaved changes are left", |_| Ok(Line::Quit)),
+    verb("quit", "", "", "closes the window without asking to save", |_| Ok(Line::Quit)),
 ];
 
 /// Names of the overlays.
@@ -215,7 +220,7 @@ pub(super) fn read(line: &str) -> Result<Line, String> {
     let verb =
         known.ok_or_else(|| format!("'{word}' is no command of a script; docs/window.md lists them"))?;
     if verb.arguments.is_empty() && !text.is_empty() {
-        return Err(format!("`{word}` stands alone, but '{text}' follows it"));
+        return Err(format!("`{word}` takes no argument, but found '{text}'"));
     }
     (verb.read)(Rest { word, text })
 }

@@ -117,7 +117,7 @@ impl Session {
             stopped: false,
         };
         session.begin()?;
-        session.player.tell(Order::Play(true));
+        session.player.send(Order::Play(true));
         Ok(session)
     }
 
@@ -126,29 +126,29 @@ impl Session {
         match action {
             Action::Play(playing) => {
                 self.playing = playing;
-                self.player.tell(Order::Play(playing));
+                self.player.send(Order::Play(playing));
             }
             Action::Step => self.step_at(RATE),
             Action::Reset => {
                 self.held = false;
-                self.player.tell(Order::Reset);
+                self.player.send(Order::Reset);
             }
             Action::Speed(speed) => {
                 self.speed = speed.clamp(0.05, 4.0);
-                self.player.tell(Order::Speed(self.speed));
+                self.player.send(Order::Speed(self.speed));
             }
             Action::Repeat(repeat) => {
                 self.repeat = repeat;
-                self.tell_range();
+                self.send_range();
             }
             Action::Range(range) => {
                 self.range = range.filter(|(first, last)| first < last);
-                self.tell_range();
+                self.send_range();
             }
             Action::Seek(frame) => {
                 (self.held, self.playing) = (false, false);
-                self.player.tell(Order::Play(false));
-                self.player.tell(Order::Seek(frame));
+                self.player.send(Order::Play(false));
+                self.player.send(Order::Seek(frame));
             }
             Action::Parameter(parameter, value) => {
                 let chosen = self.chosen;
@@ -200,29 +200,29 @@ impl Session {
             Action::Second(on) => self.on_second = on && self.second.is_some(),
             Action::Show(value) => {
                 self.show = value;
-                self.player.tell(Order::Show(value));
+                self.player.send(Order::Show(value));
             }
-            Action::Pick(from, way) => self.player.tell(Order::Pick(Some((from, way)))),
-            Action::Unpick => self.player.tell(Order::Pick(None)),
+            Action::Pick(from, way) => self.player.send(Order::Pick(Some((from, way)))),
+            Action::Unpick => self.player.send(Order::Pick(None)),
             Action::Grab(center, radius) => {
                 // The sphere is at the origin of the tool's own space, which moves with the grab.
                 let grab = Grab { center: Vec3::ZERO, radius, pull: 60.0, damping: 1.0 };
-                self.player.tell(Order::Take(Manipulator::Grab(grab), at(center)));
+                self.player.send(Order::Take(Manipulator::Grab(grab), at(center)));
                 self.held = true;
             }
             Action::Comb(center, half, radius) => {
                 // Stiff tines with low friction, as in a scene file.
                 let comb = Comb { a: -half, b: half, radius, grip: 1000.0, friction: 3.0 };
-                self.player.tell(Order::Take(Manipulator::Comb(comb), at(center)));
+                self.player.send(Order::Take(Manipulator::Comb(comb), at(center)));
                 self.held = true;
             }
-            Action::Carry(center) => self.player.tell(Order::Carry(at(center))),
+            Action::Carry(center) => self.player.send(Order::Carry(at(center))),
             Action::LetGo => {
                 self.held = false;
-                self.player.tell(Order::LetGo);
+                self.player.send(Order::LetGo);
             }
-            Action::Push(push) => self.player.tell(Order::Push(push)),
-            Action::Head(by) => self.player.tell(Order::Body(at(by))),
+            Action::Push(push) => self.player.send(Order::Push(push)),
+            Action::Head(by) => self.player.send(Order::Body(at(by))),
         }
         Ok(())
     }
@@ -235,14 +235,14 @@ impl Session {
         };
     }
 
-    fn tell_range(&self) {
+    fn send_range(&self) {
         let motion = self.last_frame().map(|last| (0, last));
-        self.player.tell(Order::Loop(self.range.or(motion).filter(|_| self.repeat)));
+        self.player.send(Order::Loop(self.range.or(motion).filter(|_| self.repeat)));
     }
 
     /// Advances by one step at this rate.
     pub(crate) fn step_at(&self, rate: FrameRate) {
-        self.player.tell(Order::Step(rate));
+        self.player.send(Order::Step(rate));
     }
 
     /// A new edit clears the scenes for redo.
@@ -266,7 +266,7 @@ impl Session {
 
     fn retune(&self) {
         let settings = |document: &Document| Box::new(document.settings().clone());
-        self.player.tell(Order::Retune(settings(&self.document), self.second.as_ref().map(settings)));
+        self.player.send(Order::Retune(settings(&self.document), self.second.as_ref().map(settings)));
     }
 
     /// The document whose parameters are shown.
@@ -322,7 +322,7 @@ impl Session {
 
     /// Processes results of other threads: a scene that was read is started. Returns their error, once.
     pub fn error(&mut self) -> Option<AppError> {
-        self.hear().or_else(|| self.player.error())
+        self.poll_reading().or_else(|| self.player.error())
     }
 
     /// Whether a scene is being read while the previous one plays on.

@@ -5,14 +5,14 @@ use crate::{AppError, player::Order};
 
 impl Session {
     /// If the simulation thread has ended, starts another one with the same scene, paused at time 0. A scene
-    /// whose start ended the thread is not started again before it is changed. Returns what to tell the user.
+    /// whose start ended the thread is not started again before it is changed. Returns the message for the user.
     pub fn restart_if_dead(&mut self) -> Option<AppError> {
         let why = self.player.failure()?;
         let started = self.player.latest().is_some_and(|snapshot| snapshot.scene == self.begun);
         self.player = new_player(self.threads, self.card.clone(), self.begun, &self.wake);
         (self.playing, self.held) = (false, false);
-        self.player.tell(Order::Speed(self.speed));
-        self.player.tell(Order::Show(self.show));
+        self.player.send(Order::Speed(self.speed));
+        self.player.send(Order::Show(self.show));
         // A scene that is being read at this moment is started when it is read.
         let next = if self.reading.is_some() {
             "the next scene is about to start"
@@ -66,7 +66,7 @@ mod tests {
         gravity(&mut session);
         shown(&mut session);
         let (text, before) = (session.document().text().to_owned(), session.begun());
-        session.player.tell(Order::Panic);
+        session.player.send(Order::Panic);
         let why = wait(&mut session, Session::restart_if_dead).to_string();
         assert!(why.contains("a test wants it") && why.contains("starts again, paused"), "{why}");
         let snapshot = shown(&mut session);
@@ -79,11 +79,11 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_that_ends_the_simulation_at_its_start_waits_for_a_change() {
+    fn a_scene_that_ends_the_simulation_at_its_start_restarts_after_a_change() {
         let mut session = session();
         shown(&mut session);
         // The thread ends before it shows the scene that is opened next.
-        session.player.tell(Order::Panic);
+        session.player.send(Order::Panic);
         session.act(Action::New(TEXT.replace("10", "11"))).unwrap();
         let why = wait(&mut session, Session::restart_if_dead).to_string();
         assert!(why.contains("after the next change"), "{why}");

@@ -37,7 +37,7 @@ impl Session {
         self.on_second = false;
         self.chosen = (0, 0);
         self.range = None;
-        self.tell_range();
+        self.send_range();
         self.opened += 1;
         Ok(())
     }
@@ -86,7 +86,7 @@ impl Session {
     }
 
     /// Receives the result of a background read.
-    pub(super) fn hear(&mut self) -> Option<AppError> {
+    pub(super) fn poll_reading(&mut self) -> Option<AppError> {
         let outcome = self.reading.as_ref()?.outcome()?;
         if self.reading.take().is_some_and(|reading| reading.stale) {
             self.begin_soon();
@@ -106,8 +106,8 @@ impl Session {
         self.joints = joints.map(|joint| joint.name.clone()).collect();
         (self.held, self.stopped) = (false, false);
         self.begun += 1;
-        self.player.tell(Order::Open(Box::new(loaded.value), second.map(|s| Box::new(s.value))));
-        self.tell_range();
+        self.player.send(Order::Open(Box::new(loaded.value), second.map(|s| Box::new(s.value))));
+        self.send_range();
         self.compare();
     }
 }
@@ -118,7 +118,7 @@ mod tests {
     use crate::session::Action;
 
     #[test]
-    fn undo_leads_back_to_the_scene_that_was_open_before() {
+    fn undo_returns_to_the_previously_open_scene() {
         let text = |style: &str| format!("[builtin]\nstyle = \"{style}\"\nstrands = 10\nguides = 5\n");
         let document = Document::new("scene.toml".as_ref(), text("wavy")).unwrap();
         let mut session = Session::new(document, 1, None, || ()).unwrap();

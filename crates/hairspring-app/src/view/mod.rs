@@ -1,10 +1,10 @@
-//! The view: camera, overlays and the current tool. The tools are in `hand`, pointer input is in `touch`.
+//! The view: camera, overlays and the current tool. The tools are in `tool`, pointer input is in `touch`.
 
-mod hand;
 mod range;
+mod tool;
 mod touch;
 
-pub use hand::{FINGERS, Hand};
+pub use tool::{FINGERS, Tool};
 
 use crate::{
     orbit::{Lens, NARROW, Orbit},
@@ -64,7 +64,7 @@ pub struct View {
     /// Camera; `None` until there is something to look at.
     pub orbit: Option<Orbit>,
     /// The current tool.
-    pub hand: Hand,
+    pub tool: Tool,
     /// Radius of the pushed sphere and of a grab [m].
     pub reach: f32,
     /// Length of the hand [m].
@@ -90,7 +90,7 @@ pub struct View {
     framed: u64,
     file: Option<PathBuf>,
     /// The last camera in the text, and of which of two scenes. If it changes, the view adopts it.
-    said: (bool, Option<toml::Value>),
+    scene_camera: (bool, Option<toml::Value>),
     /// Whether the next scene is a different one, so that the camera must be set again.
     pub forget: bool,
 }
@@ -99,7 +99,7 @@ impl Default for View {
     fn default() -> Self {
         Self {
             orbit: None,
-            hand: Hand::default(),
+            tool: Tool::default(),
             reach: 0.02,
             length: builtin::Hand::LENGTH,
             overlays: Overlays::default(),
@@ -113,7 +113,7 @@ impl Default for View {
             head: (Vec3::ZERO, Vec3::ZERO),
             framed: 0,
             file: None,
-            said: (false, None),
+            scene_camera: (false, None),
             forget: false,
         }
     }
@@ -121,10 +121,10 @@ impl Default for View {
 
 impl View {
     /// The view parameters for a picture with this aspect ratio.
-    pub fn sight(&self, scenery: &StageSnapshot, aspect: f32) -> Option<ViewParameters> {
+    pub fn view_parameters(&self, stage: &StageSnapshot, aspect: f32) -> Option<ViewParameters> {
         let orbit = self.orbit?;
         let camera = orbit.seen(aspect);
-        let strands = scenery.still.counts[1] as f32;
+        let strands = stage.still.counts[1] as f32;
         Some(ViewParameters {
             camera,
             lit_for: Orbit { turn: 0.3, ..orbit }.camera(),
@@ -140,7 +140,7 @@ impl View {
 
     /// Sets the camera for a newly opened scene, from its file or so that hair and head stay visible, and when
     /// the scene's camera is changed.
-    pub fn meet(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
+    pub fn follow_camera(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
         // A snapshot of the previous scene does not belong to the opened one.
         if self.framed != snapshot.scene && snapshot.scene >= session.begun() {
             self.framed = snapshot.scene;
@@ -148,16 +148,18 @@ impl View {
             // If an edit restarts the same scene, the camera stays.
             if self.orbit.is_none() || self.file != file || self.forget {
                 self.frame(session, snapshot, aspect);
-                self.said = said_of_camera(session);
+                self.scene_camera = scene_camera(session);
             }
             (self.file, self.forget) = (file, false);
         }
-        let said = said_of_camera(session);
-        if said != self.said {
-            if let Some(camera) = session.edited().settings().camera.filter(|_| said.0 == self.said.0) {
+        let current = scene_camera(session);
+        if current != self.scene_camera {
+            if let Some(camera) =
+                session.edited().settings().camera.filter(|_| current.0 == self.scene_camera.0)
+            {
                 self.orbit = Some(Orbit::new(&camera));
             }
-            self.said = said;
+            self.scene_camera = current;
         }
     }
 
@@ -178,8 +180,8 @@ impl View {
 }
 
 /// Which of two scenes is edited, and the camera in its text.
-fn said_of_camera(session: &Session) -> (bool, Option<toml::Value>) {
-    (session.on_second(), session.edited().said().get("camera").cloned())
+fn scene_camera(session: &Session) -> (bool, Option<toml::Value>) {
+    (session.on_second(), session.edited().parsed_text().get("camera").cloned())
 }
 
 #[cfg(test)]
@@ -188,7 +190,7 @@ mod tests {
     use crate::{document::Document, parameter, session::Action};
 
     #[test]
-    fn the_view_goes_where_the_scenes_camera_is_put_and_stays_where_a_hand_turned_it() {
+    fn the_view_follows_the_scene_camera_and_keeps_manual_turns() {
         let text = "[builtin]\nstrands = 10\nguides = 5\n";
         let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
         let mut session = Session::new(document, 1, None, || ()).unwrap();
@@ -197,7 +199,7 @@ mod tests {
             session.latest()
         });
         let (snapshot, mut view) = (snapshot.unwrap(), View::default());
-        view.meet(&session, &snapshot, 1.5);
+        view.follow_camera(&session, &snapshot, 1.5);
         let turned = Orbit { turn: 1.0, ..view.orbit.unwrap() };
         view.orbit = Some(turned);
         let put = |session: &mut Session, name: &str, value: toml_edit::Value| {
@@ -205,20 +207,20 @@ mod tests {
             session.act(Action::Parameter(parameter, Some(value))).unwrap();
         };
         put(&mut session, "gravity", [0.0, -1.0, 0.0].into_iter().collect());
-        view.meet(&session, &snapshot, 1.5);
-        assert_eq!(view.orbit, Some(turned), "nothing was said of the camera");
+        view.follow_camera(&session, &snapshot, 1.5);
+        assert_eq!(view.orbit, Some(turned), "the camera did not change");
         put(&mut session, "camera.fov", 40.0.into());
-        view.meet(&session, &snapshot, 1.5);
+        view.follow_camera(&session, &snapshot, 1.5);
         let own = session.document().settings().camera.unwrap();
         assert_eq!((view.orbit.unwrap().fov, view.orbit), (40.0, Some(Orbit::new(&own))));
         view.orbit = Some(turned);
         session.act(Action::Undo).unwrap();
-        view.meet(&session, &snapshot, 1.5);
+        view.follow_camera(&session, &snapshot, 1.5);
         assert_eq!(view.orbit.unwrap().fov, session.document().settings().camera.unwrap().fov);
     }
 
     #[test]
-    fn what_is_opened_at_once_is_looked_at_all_the_same() {
+    fn a_scene_opened_before_the_first_is_drawn_sets_the_camera() {
         let head = |y: f64| {
             format!(
                 "[builtin]\nstrands = 10\nguides = 5\n[camera]\nposition = [0.0, {y}, 2.0]\ntarget = [0.0, {y}, 0.0]\nfov = 30.0\n"
@@ -237,9 +239,9 @@ mod tests {
         // Before the window has drawn the first scene.
         session.act(Action::New(head(5.0))).unwrap();
         view.forget = true;
-        view.meet(&session, &first, 1.5);
+        view.follow_camera(&session, &first, 1.5);
         assert!(view.forget, "what was opened is still to come");
-        view.meet(&session, &seen(&session, 2), 1.5);
+        view.follow_camera(&session, &seen(&session, 2), 1.5);
         assert_eq!(view.orbit.unwrap().target.y, 5.0);
     }
 }

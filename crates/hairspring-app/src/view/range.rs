@@ -6,20 +6,20 @@ use crate::snapshot::StageSnapshot;
 impl View {
     /// Updates the range of the color ramp: from 0 to the value that a fiftieth of the nonzero points exceed,
     /// smoothed over time.
-    pub fn follow_range(&mut self, scenery: &StageSnapshot, guides: bool) {
-        if guides || scenery.values.is_empty() {
+    pub fn follow_range(&mut self, stage: &StageSnapshot, guides: bool) {
+        if guides || stage.values.is_empty() {
             self.range = [0.0, 1.0];
             return;
         }
         // Only nonzero values count, because some values, such as contact, are 0 at most points.
-        let mut some: Vec<f32> = scattered(&scenery.values).filter(|v| v.is_finite() && *v > 0.0).collect();
+        let mut some: Vec<f32> = scattered(&stage.values).filter(|v| v.is_finite() && *v > 0.0).collect();
         if some.is_empty() {
             return;
         }
         let place = some.len() * 49 / 50;
         let (_, high, _) = some.select_nth_unstable_by(place, f32::total_cmp);
         let high = high.max(1e-12);
-        // A range of a very different magnitude, from another value, is replaced at once.
+        // A range of a very different magnitude, from another value, is replaced immediately.
         let far = self.range[1] > 20.0 * high || self.range[1] < 0.05 * high;
         self.range = [0.0, if far { high } else { self.range[1] + 0.1 * (high - self.range[1]) }];
     }
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_are_taken_from_all_along_strands_of_any_number_of_points() {
+    fn values_are_sampled_evenly_along_strands_of_any_point_count() {
         for points in 2..200usize {
             // Values from 0 at the root to 1 at the tip, for enough strands that any stride would be a
             // multiple of their points.

@@ -1,6 +1,6 @@
 //! Pointer input in the picture: rotates the view, drags handles, and moves the current tool.
 
-use super::{FINGERS, Hand, View};
+use super::{FINGERS, Tool, View};
 use crate::{
     drag_limiter::Push, handle::Handle, orbit::Lens, pointer_collider::Pushed, session::Action,
     snapshot::Snapshot,
@@ -52,7 +52,7 @@ impl View {
         use egui::PointerButton::{Middle, Primary, Secondary};
         let aspect = rect.width() / rect.height().max(1.0);
         let moved = part(response.drag_delta());
-        let look = self.hand == Hand::Look || self.hand == Hand::Pick;
+        let look = self.tool == Tool::Look || self.tool == Tool::Pick;
         if response.dragged_by(Middle) || (look && shift && response.dragged_by(Primary)) {
             orbit.pan(moved, aspect);
         } else if response.dragged_by(Secondary) || (look && response.dragged_by(Primary)) {
@@ -60,7 +60,7 @@ impl View {
         }
         let lens = Lens::new(&orbit.seen(aspect), aspect);
         let pointer = response.interact_pointer_pos().map(place);
-        if self.hand == Hand::Pick
+        if self.tool == Tool::Pick
             && response.clicked()
             && let Some(at) = pointer
         {
@@ -76,10 +76,10 @@ impl View {
             let depth = depth_of_hair(snapshot, &lens, at).unwrap_or(orbit.distance);
             let place = from + way * depth;
             self.drag = Some(Drag { depth, from: place, at: place });
-            match self.hand {
-                Hand::Grab => actions.push(Action::Grab(place, self.reach)),
-                Hand::Ball | Hand::Palm => actions.push(Action::Push(Some(self.push(&lens, place)))),
-                Hand::Comb => {
+            match self.tool {
+                Tool::Grab => actions.push(Action::Grab(place, self.reach)),
+                Tool::Ball | Tool::Palm => actions.push(Action::Push(Some(self.push(&lens, place)))),
+                Tool::Comb => {
                     actions.push(Action::Comb(place, lens.right() * (FINGERS * self.reach), self.reach))
                 }
                 _ => {}
@@ -88,24 +88,24 @@ impl View {
             && response.dragged_by(Primary)
         {
             drag.at = from + way * drag.depth;
-            match self.hand {
-                Hand::Grab | Hand::Comb => actions.push(Action::Carry(drag.at)),
-                Hand::Ball | Hand::Palm => {
+            match self.tool {
+                Tool::Grab | Tool::Comb => actions.push(Action::Carry(drag.at)),
+                Tool::Ball | Tool::Palm => {
                     let at = drag.at;
                     actions.push(Action::Push(Some(self.push(&lens, at))));
                 }
-                Hand::Head => {
+                Tool::Head => {
                     // Farther than an arm's length, the head would leave the picture.
                     self.head = ((drag.at - drag.from).clamp_length_max(0.5), Vec3::ZERO);
                     actions.push(Action::Head(self.head.0));
                 }
-                Hand::Look | Hand::Pick => {}
+                Tool::Look | Tool::Pick => {}
             }
         }
         if response.drag_stopped() && self.drag.take().is_some() {
-            match self.hand {
-                Hand::Grab | Hand::Comb => actions.push(Action::LetGo),
-                Hand::Ball | Hand::Palm => actions.push(Action::Push(None)),
+            match self.tool {
+                Tool::Grab | Tool::Comb => actions.push(Action::LetGo),
+                Tool::Ball | Tool::Palm => actions.push(Action::Push(None)),
                 _ => {}
             }
         }
@@ -192,16 +192,16 @@ impl View {
 
     /// The pushed object with its target at the pointer position `at`.
     fn push(&self, lens: &Lens, at: Vec3) -> Push {
-        let what = if self.hand == Hand::Palm { Pushed::Hand(self.length) } else { Pushed::Ball(self.reach) };
+        let what = if self.tool == Tool::Palm { Pushed::Hand(self.length) } else { Pushed::Ball(self.reach) };
         Push { what, at, axes: [lens.right(), lens.up()] }
     }
 }
 
 /// Depth of the hair that is nearest to a point of the picture [m]; `None` if there is none nearby.
 fn depth_of_hair(snapshot: &Snapshot, lens: &Lens, at: Vec2) -> Option<f32> {
-    let scenery = snapshot.stages.first()?;
+    let stage = snapshot.stages.first()?;
     let mut best: Option<(f32, f32)> = None;
-    for p in scenery.points().flat_map(|p| p.iter().step_by(1 + p.len() / 200_000)) {
+    for p in stage.points().flat_map(|p| p.iter().step_by(1 + p.len() / 200_000)) {
         let Some((place, depth)) = lens.project(*p) else { continue };
         let off = place.distance(at);
         // Of the hair within a hundredth of the picture, the frontmost one.

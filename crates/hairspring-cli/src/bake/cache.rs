@@ -70,7 +70,7 @@ impl Cache {
             writer.frame(frame, &points, &velocities).map_err(failed)?;
             (before, now) = (Some(points), after);
             progress.step(|| format!("frame {frame}"));
-            if interrupt::asked() {
+            if interrupt::stop_requested() {
                 let text =
                     "stopped before the file was complete; run the same command with --resume to continue";
                 return Err(Fault::Interrupted(text.into()));

@@ -6,7 +6,7 @@ mod samples;
 mod selection;
 
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
     frames::{self, FrameRange},
     input::Input,
@@ -299,15 +299,15 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "skipped": skipped,
             "fps": options.fps.hertz(),
         });
-        say(totals.json(&stage, summary));
+        print_line(totals.json(&stage, summary));
     } else {
         let skipped = if skipped > 0 { format!(", {skipped} existed already") } else { String::new() };
-        say(format_args!(
+        print_line(format_args!(
             "wrote    {} ({}{skipped})",
             options.output.display(),
             totals::frames(wanted.len())
         ));
-        totals.tell(&stage);
+        totals.print(&stage);
     }
     Ok(())
 }

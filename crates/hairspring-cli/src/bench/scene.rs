@@ -2,7 +2,7 @@
 
 use super::Times;
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
     input::{Input, Units},
     totals::grouped,
@@ -100,7 +100,7 @@ pub(super) fn run(
     if as_json {
         let each =
             STAGES.iter().zip(&stages).map(|((name, ..), times)| ((*name).into(), json!(times.rank(0.5))));
-        say(json!({
+        print_line(json!({
             "scene": path.display().to_string(),
             "threads": threads,
             "simd": stage.instruction_set(),
@@ -125,40 +125,40 @@ pub(super) fn run(
         }));
         return Ok(());
     }
-    say(format_args!(
+    print_line(format_args!(
         "scene    {}: {} of {} strands simulated, {} points",
         path.display(),
         grouped(all.0),
         grouped(all.1),
         grouped(simulated.0)
     ));
-    say(format_args!(
+    print_line(format_args!(
         "on       cpu, {threads} threads, {}, {}, {} substeps (at most {substeps}), {frames} frames of 1/60 s",
         stage.instruction_set(),
         solver.integrator.name(),
         solver.substeps
     ));
-    say(format_args!(
+    print_line(format_args!(
         "time     {:.2} ms per frame (median), {:.2} ms (95 %); medians of the stages:",
         whole.rank(0.5),
         whole.rank(0.95)
     ));
     for ((name, what, _), times) in STAGES.iter().zip(&stages) {
-        say(format_args!("         {:8.2} ms  {name:<11} {what}", times.rank(0.5)));
+        print_line(format_args!("         {:8.2} ms  {name:<11} {what}", times.rank(0.5)));
     }
-    say(format_args!(
+    print_line(format_args!(
         "         {ns:.2} ns per point and substep, per core, for the solve alone (wall time x threads)"
     ));
-    say(format_args!(
+    print_line(format_args!(
         "met      {} points and {} segments pushed out by a collider at the end of the median frame",
         grouped(points),
         grouped(segments)
     ));
-    say(format_args!("         {} points that need a collider distance", grouped(looked_up)));
-    say(format_args!(
+    print_line(format_args!("         {} points that need a collider distance", grouped(looked_up)));
+    print_line(format_args!(
         "speed    {:.2} mm/s: the fastest simulated point at the end of the last frame",
         measure.speed_max * 1e3
     ));
-    say(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
+    print_line(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
     Ok(())
 }

@@ -4,9 +4,9 @@
 //! frames, so that other load on the machine affects all of them alike. Only the step is timed, contact
 //! included, as in a bench without the table.
 
-use super::{Options, Times, say_scene};
+use super::{Options, Times, print_scene};
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
 };
 use hairspring::{material::Model, settings::Integrator, simulation::Simulation};
@@ -88,7 +88,9 @@ pub(super) fn run(options: &Options, console: Console) -> Result<(), Fault> {
         let last = last.iter().map(|times| times.per_point(options)).cycle();
         let each = cells.iter().zip(&times).zip(last);
         let over = baseline(&cells);
-        say(Value::from_iter(each.map(|((cell, times), last)| object(options, cell, times, (over, last)))));
+        print_line(Value::from_iter(
+            each.map(|((cell, times), last)| object(options, cell, times, (over, last))),
+        ));
     } else {
         let figures: Vec<f64> = times.iter().map(|times| times.per_point(options)).collect();
         print(options, &cells, &figures);
@@ -159,8 +161,8 @@ fn object(options: &Options, cell: &Cell, times: &Times, (over, last): (&str, f6
 
 /// Prints the table: each figure, and its speedup over the last row of its column.
 fn print(options: &Options, cells: &[Cell], figures: &[f64]) {
-    say_scene(options);
-    say(format_args!(
+    print_scene(options);
+    print_line(format_args!(
         "on       {}, {} threads, {}, {} substeps, {} frames of 1/60 s of each, {TURN} in turn",
         options.device,
         rayon::current_num_threads(),
@@ -168,23 +170,25 @@ fn print(options: &Options, cells: &[Cell], figures: &[f64]) {
         options.substeps,
         options.frames
     ));
-    say(format_args!(
+    print_line(format_args!(
         "figures  ns per point and substep, per core (wall time x threads), medians of the {} frames; in brackets the speedup over {}",
         options.frames,
         baseline(cells)
     ));
-    say("         a step includes everything, contact too; reading positions and measuring are not included");
+    print_line(
+        "         a step includes everything, contact too; reading positions and measuring are not included",
+    );
     if cfg!(feature = "scalar") {
-        say(format_args!(
+        print_line(format_args!(
             "scalar   the same code without SIMD, compiled like the whole program for: {}",
             compiled_for().join(", ")
         ));
     } else {
-        say("scalar   left out; build with --features scalar to measure the code without SIMD too");
+        print_line("scalar   left out; build with --features scalar to measure the code without SIMD too");
     }
     let line = |name: &str, cells: [String; MODELS.len()]| {
         let cells: String = cells.iter().map(|cell| format!("{cell:>18}")).collect();
-        say(format_args!("{name:<9}{cells}"));
+        print_line(format_args!("{name:<9}{cells}"));
     };
     line("", MODELS.map(|model| model.name().to_owned()));
     let last = &figures[figures.len() - MODELS.len()..];

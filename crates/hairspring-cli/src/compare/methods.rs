@@ -7,7 +7,7 @@ mod swing;
 
 use super::Options;
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
     input::Input,
     output,
@@ -141,11 +141,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         output::write_whole(path, report::page(&setting, &trials).as_bytes())?;
     }
     if options.json {
-        say(as_json(&setting, &trials, options));
+        print_line(as_json(&setting, &trials, options));
     } else {
         print(&setting, &trials);
         if let Some(path) = &options.report {
-            say(format_args!("wrote    {}", path.display()));
+            print_line(format_args!("wrote    {}", path.display()));
         }
     }
     Ok(())
@@ -253,14 +253,14 @@ fn row(t: &Trial) -> [String; 8] {
 
 fn print(setting: &Setting, trials: &[Trial]) {
     let grouped = crate::totals::grouped;
-    say(format_args!(
+    print_line(format_args!(
         "scene    {}: {} of {} strands simulated, {} points",
         setting.name,
         grouped(setting.simulated_strands),
         grouped(setting.strands),
         grouped(setting.simulated_points)
     ));
-    say(format_args!(
+    print_line(format_args!(
         "each     {} s of the scene, {} substeps per 1/60 s, {} threads, {}",
         number(setting.seconds),
         setting.substeps,
@@ -277,9 +277,9 @@ fn print(setting: &Setting, trials: &[Trial]) {
             2.. => format!("{cell:>width$}"),
             _ => format!("{cell:<width$}"),
         });
-        say(cells.collect::<Vec<_>>().join("  "));
+        print_line(cells.collect::<Vec<_>>().join("  "));
     }
-    say(format_args!("{}", limits(setting)));
+    print_line(format_args!("{}", limits(setting)));
 }
 
 /// Describes the figures, for the help of the command.

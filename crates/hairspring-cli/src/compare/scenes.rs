@@ -4,10 +4,10 @@ mod figures;
 
 use super::Options;
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
     frames::{self, FrameRange},
-    input::{self, tell},
+    input::{self, print_notes},
     output,
     picture::{Setup, Studio, View},
     render::clip,
@@ -94,9 +94,9 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     };
     let a = side(path, "--set-a", &options.set_a, options)?;
     let b = side(options.b.as_ref().unwrap_or(path), "--set-b", &options.set_b, options)?;
-    tell(&a.notes, &a.repairs, console);
+    print_notes(&a.notes, &a.repairs, console);
     if (&b.notes, b.repairs) != (&a.notes, a.repairs) {
-        tell(&b.notes, &b.repairs, console);
+        print_notes(&b.notes, &b.repairs, console);
     }
     let settings = scene_differences([&a.settings, &b.settings], [&a.text, &b.text])
         .map_err(|why| Fault::Content(why.to_string()))?;
@@ -142,7 +142,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if options.json {
         let listed: Vec<_> =
             settings.iter().map(|d| json!({ "key": d.key, "a": d.values[0], "b": d.values[1] })).collect();
-        say(json!({
+        print_line(json!({
             "a": figures[0].json(&paths[0], &stages[0]),
             "b": figures[1].json(&paths[1], &stages[1]),
             "settings": listed,
@@ -158,9 +158,9 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     print(&paths, &stages, &settings, &files, &figures);
     print_distances(distances.as_ref(), &stages);
-    say(format_args!("played   {} at {fps} per second", crate::totals::frames(frames as usize)));
+    print_line(format_args!("played   {} at {fps} per second", crate::totals::frames(frames as usize)));
     if let Some(path) = written {
-        say(format_args!("wrote    {}", path.display()));
+        print_line(format_args!("wrote    {}", path.display()));
     }
     Ok(())
 }
@@ -350,7 +350,7 @@ fn print(
 ) {
     for (k, stage) in stages.iter().enumerate() {
         let (guides, strands) = stage.simulated_strands();
-        say(format_args!(
+        print_line(format_args!(
             "{}        {}: {} of {} hairs simulated",
             ["A", "B"][k],
             paths[k].display(),
@@ -364,16 +364,16 @@ fn print(
         [d.key.clone(), a, b]
     }));
     match settings.len() {
-        0 => say("settings the same"),
+        0 => print_line("settings the same"),
         n => {
             table(&rows);
             if n > LISTED {
-                say(format_args!("and {} more settings; --json lists all", n - LISTED));
+                print_line(format_args!("and {} more settings; --json lists all", n - LISTED));
             }
         }
     }
     if !files.is_empty() {
-        say(format_args!("files    with another content: {}", files.join(", ")));
+        print_line(format_args!("files    with another content: {}", files.join(", ")));
     }
     let mut rows = vec![["figure".to_owned(), "A".into(), "B".into()]];
     let mut row = |name: &str, figure: &dyn Fn(&Figures) -> String| {
@@ -398,7 +398,7 @@ fn print(
 fn print_distances(distances: Option<&Distances>, stages: &[Stage; 2]) {
     let Some(d) = distances else {
         let [a, b] = stages.each_ref().map(|s| (s.simulated_strands().1, s.simulated_points().1));
-        say(format_args!(
+        print_line(format_args!(
             "distance not measured: the strands differ ({} hairs of {} points, and {} of {})",
             grouped(a.0),
             grouped(a.1),
@@ -407,7 +407,7 @@ fn print_distances(distances: Option<&Distances>, stages: &[Stage; 2]) {
         ));
         return;
     };
-    say(format_args!(
+    print_line(format_args!(
         "distance {} mean, {} maximum (strand {} in frame {}); at the end {} mean, {} maximum",
         millimeters(d.mean()),
         millimeters(d.max),
@@ -423,7 +423,12 @@ fn table(rows: &[[String; 3]]) {
     let width = |c: usize| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0);
     let widths = [width(0), width(1), width(2)];
     for [name, a, b] in rows {
-        say(format_args!("{name:<w0$}  {a:>w1$}  {b:>w2$}", w0 = widths[0], w1 = widths[1], w2 = widths[2]));
+        print_line(format_args!(
+            "{name:<w0$}  {a:>w1$}  {b:>w2$}",
+            w0 = widths[0],
+            w1 = widths[1],
+            w2 = widths[2]
+        ));
     }
 }
 

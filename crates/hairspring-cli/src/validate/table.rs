@@ -2,7 +2,7 @@
 //! docs/validation.md.
 
 use crate::{
-    console::{Console, say},
+    console::{Console, print_line},
     fault::Fault,
     interrupt,
 };
@@ -61,7 +61,7 @@ pub(super) fn run(cases: &[&'static Case], console: Console) -> Result<(), Fault
         .par_iter()
         .with_max_len(1)
         .map(|cell| {
-            let outcomes = (!interrupt::asked()).then(|| cell.run());
+            let outcomes = (!interrupt::stop_requested()).then(|| cell.run());
             let done = done.fetch_add(1, Relaxed) + 1;
             if let Ok(mut progress) = progress.lock() {
                 let Method { points, model, .. } = cell.method;
@@ -72,8 +72,8 @@ pub(super) fn run(cases: &[&'static Case], console: Console) -> Result<(), Fault
         .collect();
     drop(progress);
     let heads: Vec<String> = POINTS.iter().map(|points| format!(" {points} |")).collect();
-    say(format_args!("| case | model | within |{}", heads.concat()));
-    say(format_args!("| --- | --- | --: |{}", " --: |".repeat(POINTS.len())));
+    print_line(format_args!("| case | model | within |{}", heads.concat()));
+    print_line(format_args!("| --- | --- | --: |{}", " --: |".repeat(POINTS.len())));
     let mut notes: Vec<String> = Vec::new();
     for (r, (case, model)) in rows.iter().enumerate() {
         let of_columns = (0..POINTS.len()).rev().map(|c| &found[c * rows.len() + r]);
@@ -82,7 +82,7 @@ pub(super) fn run(cases: &[&'static Case], console: Console) -> Result<(), Fault
             None => note(&mut notes, "not measured: the run was interrupted".into()),
         });
         let texts: Vec<String> = texts.collect();
-        say(format_args!(
+        print_line(format_args!(
             "| {} | {} | {} | {} |",
             case.name,
             model.name(),
@@ -90,10 +90,10 @@ pub(super) fn run(cases: &[&'static Case], console: Console) -> Result<(), Fault
             texts.join(" | ")
         ));
     }
-    say("");
-    notes.iter().enumerate().for_each(|(k, note)| say(format_args!("{}. {note}", k + 1)));
+    print_line("");
+    notes.iter().enumerate().for_each(|(k, note)| print_line(format_args!("{}. {note}", k + 1)));
     let threads = rayon::current_num_threads();
-    say(format_args!(
+    print_line(format_args!(
         "\n{} cells in {:.0} s on {threads} threads.",
         found.iter().flatten().count(),
         began.elapsed().as_secs_f64()

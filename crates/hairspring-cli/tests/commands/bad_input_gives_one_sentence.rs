@@ -41,7 +41,7 @@ fn missing_and_unknown_files() {
 }
 
 #[test]
-fn what_the_window_cannot_open_is_refused_before_it_opens() {
+fn live_refuses_files_that_cannot_be_opened() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     refuse(f, &["live", "no.toml"], 3, &["no.toml"]);

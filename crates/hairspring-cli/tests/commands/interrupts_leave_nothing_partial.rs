@@ -122,7 +122,7 @@ fn between_frames_of_every_kind() {
 }
 
 #[test]
-fn a_second_signal_ends_a_long_frame_at_once() {
+fn a_second_signal_ends_a_long_frame_immediately() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_groom(f, 6000);

@@ -6,7 +6,7 @@ use crate::common::{names, program};
 use std::process::Command;
 
 #[test]
-fn a_run_without_enough_memory_says_so_and_leaves_no_partial_file() {
+fn a_run_without_enough_memory_is_reported_and_leaves_no_partial_file() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("large.toml"), "[builtin]\nstrands = 2000000\nguides = 10\n").unwrap();
     std::fs::create_dir(folder.path().join("out")).unwrap();

@@ -96,7 +96,7 @@ fn motion_vectors_lead_back_to_the_previous_frame() {
 }
 
 #[test]
-fn a_shutter_blurs_what_moves_and_nothing_else() {
+fn a_shutter_blurs_only_moving_hair() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_scene(f, 300);

@@ -43,7 +43,7 @@ fn refuse(folder: &Path, more: &[&str], code: i32, words: &[&str]) {
 }
 
 #[test]
-fn another_run_is_refused_with_what_differs() {
+fn resuming_another_run_is_refused_with_the_difference() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_scene(f, 40);
@@ -82,7 +82,7 @@ fn another_run_is_refused_with_what_differs() {
 }
 
 #[test]
-fn a_truncated_or_changed_frame_is_made_again_and_reported() {
+fn a_truncated_or_changed_frame_is_written_again_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_scene(f, 40);
@@ -104,7 +104,7 @@ fn a_truncated_or_changed_frame_is_made_again_and_reported() {
 }
 
 #[test]
-fn frames_without_a_manifest_are_made_again() {
+fn frames_without_a_manifest_are_written_again() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_scene(f, 40);
@@ -142,7 +142,7 @@ fn ranges_of_one_bake_share_a_manifest() {
     bake(f, &["--frames", "3-4"]);
     let report = bake(f, &["--frames", "1-5", "--resume"]);
     assert_eq!((&report["frames"], &report["skipped"]), (&1.into(), &4.into()));
-    // A bake of another scene starts a new list and says so.
+    // A bake of another scene starts a new list and reports it.
     edit(&f.join("scene.toml"), "gust = 0.5", "gust = 0.6");
     let output = program(f, &[&BAKE[..], &["--frames", "1-2"]].concat()).output().unwrap();
     let stderr = String::from_utf8(output.stderr).unwrap();

@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn defaults_of_the_built_in_scene_are_those_of_its_code() {
+    fn defaults_of_the_built_in_scene_match_its_code() {
         use hairspring_scene::{Guides, builtin::BuiltinOptions};
         let default = |name: &str| parameter(name).unwrap().default.unwrap()();
         let options = BuiltinOptions::default();

@@ -106,7 +106,7 @@ fn many_strands_may_share_the_arrays_of_points() {
 }
 
 #[test]
-fn what_is_left_out_is_noted() {
+fn skipped_data_is_noted() {
     let file = lines(3, |file, positions| {
         let radii = file.floats("SCALAR", &[0.00005; 3]);
         json!([
@@ -147,7 +147,7 @@ fn more_objects_than_groups_are_one_group() {
 }
 
 #[test]
-fn a_file_without_strands_says_what_is_expected() {
+fn a_file_without_strands_is_refused_with_the_expected_content() {
     let text = gltf::parse_groom(&glb(), &|_| None).unwrap_err().to_string();
     assert!(
         text.starts_with(

@@ -76,7 +76,7 @@ fn on_head(folder: &TempDir, more: &str) -> (Groom, String) {
 }
 
 #[test]
-fn the_unit_is_that_which_puts_the_roots_on_the_body() {
+fn the_unit_that_puts_the_roots_on_the_body_is_chosen() {
     for (unit, name) in
         [(1.0, "meters"), (10.0, "decimeters"), (100.0, "centimeters"), (1000.0, "millimeters")]
     {
@@ -195,7 +195,7 @@ fn reversed_strands_are_reported_and_can_be_turned() {
 }
 
 #[test]
-fn colors_of_a_file_win_over_the_look_unless_the_scene_says_otherwise() {
+fn colors_of_a_file_replace_those_of_the_look_unless_the_scene_sets_otherwise() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     fs::write(folder.path().join("hair.hair"), samples::written(&samples::groom(4), "hair")).unwrap();

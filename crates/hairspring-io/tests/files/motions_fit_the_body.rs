@@ -180,7 +180,7 @@ fn a_head_alone_is_not_taken_for_a_person() {
 }
 
 #[test]
-fn frames_that_the_header_does_not_count_are_reported() {
+fn frames_beyond_the_count_of_the_header_are_reported() {
     let (clip, notes) = read(&bvh("Frames: 3\nFrame Time: 0.02\n", 3)).unwrap();
     assert_eq!((clip.frame_count(), clip.rate), (3, 50.0));
     assert!(!notes.contains("frames"), "{notes}");
@@ -241,7 +241,7 @@ fn unusual_frame_times_are_reported_and_replaced_by_the_rate_of_the_scene() {
 }
 
 #[test]
-fn a_scene_with_a_bust_says_how_it_is_moved() {
+fn notes_describe_how_a_clip_moves_a_bust() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     // A skinned triangle at the neck; the person has no joint below it in common.

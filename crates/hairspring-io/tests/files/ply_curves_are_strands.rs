@@ -54,7 +54,7 @@ fn lists_and_numbers_of_points_name_strands() {
 }
 
 #[test]
-fn a_file_is_read_with_notes_about_what_is_left_out() {
+fn a_file_is_read_with_notes_about_skipped_data() {
     let folder = tempfile::tempdir().unwrap();
     let options = ReadOptions { scale: Some(1.0), up: None };
     let read = |name: &str, bytes: &[u8]| {
@@ -94,7 +94,7 @@ fn headers_of_other_programs_are_read() {
 }
 
 #[test]
-fn what_is_no_curve_is_one_sentence() {
+fn files_without_valid_curves_are_refused_in_one_sentence() {
     assert!(error(&with_edges(4, &[[0, 1], [1, 2], [1, 3]])).contains("vertex 1 has more than two edges"));
     assert!(error(&with_edges(3, &[[0, 1], [1, 2], [2, 0]])).contains("form a loop"));
     assert!(error(&with_edges(2, &[[0, 2]])).contains("names vertex 2, but the file has 2 vertices"));
@@ -118,7 +118,7 @@ fn what_is_no_curve_is_one_sentence() {
 }
 
 #[test]
-fn what_is_wrong_is_named_with_its_place() {
+fn errors_name_the_line_or_the_byte() {
     let file = with_edges(3, &[[0, 1], [1, 2]]);
     assert!(error("solid\n").starts_with("byte 0: a .ply file begins with"));
     assert!(error("ply\nformat ascii 1.0\n").starts_with("line 3: the header has no line `end_header`"));
@@ -142,7 +142,7 @@ fn what_is_wrong_is_named_with_its_place() {
 }
 
 #[test]
-fn counts_and_lines_of_a_header_cost_nothing() {
+fn large_counts_and_lines_of_a_header_use_no_memory() {
     let header = |element: &str| {
         format!(
             "ply\nformat binary_little_endian 1.0\n{element}\nelement vertex 18446744073709551615\nproperty char x\n\

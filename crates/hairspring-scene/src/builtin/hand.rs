@@ -171,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_hand_is_closed_and_as_large_as_one_and_its_capsules_hold_it() {
+    fn a_hand_is_a_closed_mesh_of_natural_size_inside_its_capsules() {
         let Hand { mesh, capsules } = hand(Hand::CELL);
         let (low, high) = mesh.bounds().unwrap();
         assert!((high.y + 0.001 * -WRIST[0] - Hand::LENGTH).abs() < 0.002, "{} m above the palm", high.y);

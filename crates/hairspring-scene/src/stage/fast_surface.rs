@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_goes_across_itself_near_hair_asks_for_parts() {
+    fn only_fast_motion_across_a_limb_near_hair_needs_time_slices() {
         let mesh = finger();
         let limbs = FastSurfaceProbe::of_solid(&mesh, 0.002);
         let parts = |moved: Vec3, within: Option<(Vec3, Vec3)>| {
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_asks_for_parts_by_its_thickness() {
+    fn the_thickness_of_a_sheet_determines_its_time_slices() {
         let mesh = finger();
         let sheet = FastSurfaceProbe::of_sheet(&mesh, 0.002);
         let parts = |moved: Vec3| sheet.parts(&mesh, &mesh.positions, bent(&mesh, moved), None);

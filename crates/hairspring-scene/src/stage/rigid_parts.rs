@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn what_moves_by_itself_is_a_piece_and_the_rest_is_whole() {
+    fn independent_joints_become_rigid_parts_and_the_rest_stays_in_one_mesh() {
         // The anchor, a child of it, a prop, a parent and its child.
         let mut apart = body(&[None, Some(0), None, None, Some(3)]);
         let pieces = take(&mut apart, 0, 1.5);
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn what_shares_a_vertex_or_a_triangle_or_is_too_long_stays() {
+    fn joints_that_share_a_vertex_or_triangle_or_are_too_long_are_not_separated() {
         let whole = body(&[None, None]);
         let mut long = whole.clone();
         assert!(take(&mut long, 0, 0.5).is_empty() && long == whole);

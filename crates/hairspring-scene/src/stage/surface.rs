@@ -182,7 +182,7 @@ mod tests {
     use hairspring::body::{Joint, Mesh, Skin, Trs};
 
     #[test]
-    fn a_skinned_sheet_is_where_its_joints_are_and_knows_how_it_moved() {
+    fn a_skinned_sheet_follows_its_joints_and_reports_its_displacement() {
         let positions: Vec<Vec3> =
             [(0.0, 0.0), (0.0, 0.1), (0.3, 0.0), (0.3, 0.1)].map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec();
         let mesh = Mesh { positions, triangles: vec![[0, 1, 2], [2, 1, 3]], ..Mesh::default() };

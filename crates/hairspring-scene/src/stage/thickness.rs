@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_thinner_than_a_cell_is_told_where_hair_is() {
+    fn a_mesh_thinner_than_a_cell_is_reported_if_it_is_near_hair() {
         let bar = cuboid(Vec3::new(0.2, 0.005, 0.001), 8);
         let thin = ThinMesh::find(&bar, 0.003, None).expect("2 mm are thinner than 3 mm");
         assert!((thin.thickness - 0.002).abs() < 1e-4 && thin.share > 0.3, "{thin:?}");

@@ -28,7 +28,7 @@ fn head() -> Scene {
 }
 
 #[test]
-fn what_follows_a_restored_state_is_what_followed_it_before() {
+fn playback_from_a_restored_state_repeats_the_earlier_one() {
     let mut stage = Stage::new(head()).unwrap();
     play(&mut stage, 10);
     stage.move_body(RigidTransform { translation: Vec3::X * 0.02, ..RigidTransform::default() });

@@ -134,7 +134,7 @@ fn standing_and_lying_strands() {
 
 /// The response of an upright strand to a sideways load has its pole where the second variation has its zero.
 #[test]
-fn the_standing_strand_gives_way_at_greenhills_value() {
+fn the_standing_strand_buckles_at_greenhills_value() {
     let critical = stability::greenhill();
     let (below, above) =
         (elastica::standing_deflection(critical * 0.999), elastica::standing_deflection(critical * 1.001));

@@ -148,7 +148,7 @@ mod tests {
     /// A slanted surface of triangles far smaller than a pixel, far from the picture's corner: every sample
     /// hits it, at the correct depth.
     #[test]
-    fn tiny_triangles_neither_gape_nor_jump() {
+    fn tiny_triangles_leave_no_gaps_and_do_not_jump() {
         let side = 4000;
         let (origin, step, n) = (Vec2::new(3001.3, 3977.7), 0.037, 300);
         let corner = |i: usize, j: usize| {

@@ -205,7 +205,7 @@ mod tests {
 
     /// Colors of the published absorption, computed independently: (melanin, redness, color).
     #[test]
-    fn melanin_absorbs_what_was_published() {
+    fn melanin_has_the_published_absorption() {
         // Half of the scale is an amount of ln 2, so the absorption is that multiple of the published
         // coefficients.
         let close = |a: Vec3, b: Vec3| (a - b).abs().max_element() < 1e-5;
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn a_color_is_what_it_absorbs() {
+    fn absorption_of_a_color_gives_that_color() {
         for color in [Vec3::new(0.42, 0.27, 0.13), Vec3::new(0.011, 0.009, 0.008), Vec3::ONE] {
             assert!((seen(absorption(color)) - color).abs().max_element() < 1e-5);
         }
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn packing_keeps_what_the_eye_sees() {
+    fn packing_is_accurate_to_an_srgb_code() {
         for k in 0..800 {
             let light = Vec3::new(1.0, 0.5, 0.1) * (k as f32 / 100.0);
             let codes = light.to_array().map(|c| (c / MAX_LIGHT).sqrt());

@@ -142,7 +142,7 @@ mod tests {
     use hairspring_scene::Camera;
 
     #[test]
-    fn points_fall_where_the_camera_sees_them() {
+    fn points_are_projected_as_the_camera_defines() {
         let view = View::new(&Camera::default(), 640, 480);
         let by = Projection { view, depths: [0.5, 3.0], scale: 2.0 * view.focal, low: f32::NEG_INFINITY };
         let mut points: Vec<Vec3> =

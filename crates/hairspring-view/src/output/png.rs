@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_fill_the_last_run_of_signs() {
+    fn the_frame_number_fills_the_last_run_of_number_signs() {
         let path = |p: &str, n| sequence_path(Path::new(p), n).map(|p| p.to_string_lossy().into_owned());
         assert_eq!(path("out/frame.####.png", 7).as_deref(), Some("out/frame.0007.png"));
         assert_eq!(path("a##b#.png", 123).as_deref(), Some("a##b123.png"));

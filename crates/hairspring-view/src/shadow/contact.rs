@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn a_plate_takes_all_of_the_sky_under_it_and_half_at_its_edge() {
+    fn a_plate_occludes_the_sky_under_it_and_half_of_it_at_its_edge() {
         let reach = REACH * 2.0;
         let close = |found: [f32; 3], right: [f32; 3]| {
             assert!(found.iter().zip(right).all(|(a, b)| (a - b).abs() < 0.03), "{found:?} for {right:?}");

@@ -103,7 +103,7 @@ mod tests {
     /// The voxels that a strand passes contain its length times its width, wherever it ends and whatever part
     /// of it is broken.
     #[test]
-    fn what_a_strand_covers_is_in_its_voxels() {
+    fn voxels_sum_to_the_covered_area_of_a_strand() {
         let (grid, look) =
             (Grid { origin: Vec3::splat(-0.1), voxel: 0.01, size: [21, 21, 21] }, HairLook::default());
         for n in [2, 5, 9, 10, 30] {

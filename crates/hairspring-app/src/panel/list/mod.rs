@@ -224,25 +224,25 @@ mod tests {
     }
 
     #[test]
-    fn keys_are_added_and_taken_out_by_buttons_and_undo_leads_back() {
+    fn buttons_add_and_remove_keys_and_undo_restores_the_text() {
         let (mut harness, session) = panel(SCENE);
-        let says = |text: &str| session.borrow().document().text().contains(text);
+        let contains = |text: &str| session.borrow().document().text().contains(text);
         // In the order of the panel: those of the charged body, of the tool and of the motion.
         press(&mut harness, "Add a key", 0);
         assert!(
-            says("path = [{ time = 1.0, center = [0.3, 1.8, 0.0] }]"),
+            contains("path = [{ time = 1.0, center = [0.3, 1.8, 0.0] }]"),
             "{}",
             session.borrow().document().text()
         );
         press(&mut harness, "+", 0);
-        assert!(says("{ time = 1.5, center = [0.3, 1.8, 0.0] }"));
+        assert!(contains("{ time = 1.5, center = [0.3, 1.8, 0.0] }"));
         press(&mut harness, "Add a key", 0);
-        assert!(says("path = [[0.0, 0.0, 0.0, 0.0]]"));
+        assert!(contains("path = [[0.0, 0.0, 0.0, 0.0]]"));
         press(&mut harness, "Add a key", 0);
-        assert!(says("keys = [{ time = 0.0, position = [0.0, 0.0, 0.0], rotation = [0.0, 0.0, 0.0] }]"));
+        assert!(contains("keys = [{ time = 0.0, position = [0.0, 0.0, 0.0], rotation = [0.0, 0.0, 0.0] }]"));
         press(&mut harness, "-", 0);
         press(&mut harness, "-", 0);
-        assert!(!says("time = 1"), "{}", session.borrow().document().text());
+        assert!(!contains("time = 1"), "{}", session.borrow().document().text());
         for _ in 0..6 {
             session.borrow_mut().act(Action::Undo).unwrap();
         }
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_added_stands_where_one_looks() {
+    fn added_entries_are_placed_at_the_center_of_the_view() {
         let text =
             placed("shape.sphere = { center = [0.0, 1.3, 0.25], radius = 0.08 }", Vec3::new(0.1, -0.5, 0.0));
         assert_eq!(text.trim(), "shape.sphere = { center = [0.1, 0.8, 0.25], radius = 0.08 }");
@@ -264,17 +264,17 @@ mod tests {
     }
 
     #[test]
-    fn what_may_be_left_out_is_switched_on_and_off() {
+    fn optional_fields_can_be_switched_on_and_off() {
         let (mut harness, session) = panel(SCENE);
-        let says = |text: &str| session.borrow().document().text().contains(text);
+        let contains = |text: &str| session.borrow().document().text().contains(text);
         press(&mut harness, "never", 0);
-        assert!(says("until = 2.0"));
+        assert!(contains("until = 2.0"));
         press(&mut harness, "never", 0);
-        assert!(!says("until"));
+        assert!(!contains("until"));
     }
 
     #[test]
-    fn an_entry_goes_back_to_what_it_was_opened_with_wherever_it_has_moved() {
+    fn reset_of_a_list_entry_survives_changes_of_its_index() {
         let scene =
             format!("{SCENE}\n[[charged]]\ncenter = [-0.3, 1.8, 0.0]\nradius = 0.14\ncharge = 2e-7\n");
         let (mut harness, session) = panel(&scene);

@@ -40,13 +40,13 @@ impl Rows<'_> {
     pub(super) fn field(&mut self, ui: &mut Ui, key: &Key, name: &str, value: Option<&toml::Value>) {
         let Some(field) = of(self.list, name) else { return };
         let document = self.session.edited();
-        let said = key.look_up(document.said()).is_some();
+        let in_text = key.look_up(document.parsed_text()).is_some();
         // An added entry has no original value; only undo reverts its changes.
         let before = document.first(key).filter(|[_, counted]| *counted != key.look_up(document.effective()));
-        let back = before.map(|[said, _]| said.and_then(edit::written));
+        let back = before.map(|[text, _]| text.and_then(edit::written));
         if let Kind::Keys(keys) = field.kind {
             // If the corners of a hull come from a file, the text has none.
-            if name == "points" && !said {
+            if name == "points" && !in_text {
                 return;
             }
             ui.push_id(name, |ui| {

@@ -81,7 +81,7 @@ pub fn play(mut stage: Stage, frames: u32, draw: bool, progress: &mut Progress) 
         progress.step(|| {
             let name = stage.scene().solver.integrator.name();
             let lost = if broken || most > BOUND { ", lost" } else { "" };
-            format!("{name}, frame {frame}: {:.3} % the worst stretch{lost}", most * 1e2)
+            format!("{name}, frame {frame}: worst stretch {:.3} %{lost}", most * 1e2)
         });
     }
     times.sort_by(f64::total_cmp);

@@ -63,13 +63,13 @@ const ELSEWHERE: &[(&str, &str)] = &[
     ("groom.maps", "maps are files; the panel has no file dialog for them"),
     ("builtin.maps", "as `groom.maps`"),
     ("groom.grow.parts", "names of parts of the body's file"),
-    ("groom.grow.joint", "where hair grows is said with its parts"),
-    ("groom.grow.inside", "where hair grows is said with its parts"),
+    ("groom.grow.joint", "where hair grows is set with its parts"),
+    ("groom.grow.inside", "where hair grows is set with its parts"),
 ];
 
 /// `book_is_complete` checks that the book has a page for every field of the scene file.
 #[test]
-fn every_field_of_the_scene_file_is_in_the_panel_or_is_said_why_not() {
+fn every_field_of_the_scene_file_is_in_the_panel_or_has_a_documented_reason() {
     let known: Vec<String> = parameter::ALL
         .iter()
         .flat_map(|p| match p.of {
@@ -96,7 +96,7 @@ fn every_field_of_the_scene_file_is_in_the_panel_or_is_said_why_not() {
     assert!(fields.len() > 150, "{} fields", fields.len());
     let missing: Vec<_> =
         fields.iter().filter(|f| !shown(f) && ELSEWHERE.iter().all(|(name, _)| name != f)).collect();
-    assert!(missing.is_empty(), "neither in the panel nor said why not: {missing:?}");
+    assert!(missing.is_empty(), "neither in the panel nor listed with a reason: {missing:?}");
     for (name, why) in ELSEWHERE {
         assert!(fields.iter().any(|f| f == name) && !shown(name) && !why.is_empty(), "{name}");
     }

@@ -67,7 +67,7 @@ impl Panel {
 }
 
 #[test]
-fn no_scene_that_is_just_opened_shows_a_reset() {
+fn a_newly_opened_scene_shows_no_reset() {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/scenes");
     let scenes = std::fs::read_dir(examples).unwrap().map(|entry| entry.unwrap().path());
     let scenes = scenes.filter(|path| path.extension().is_some_and(|e| e == "toml"));
@@ -91,7 +91,7 @@ fn no_scene_that_is_just_opened_shows_a_reset() {
 }
 
 #[test]
-fn what_was_changed_goes_back_to_what_was_opened() {
+fn reset_restores_the_value_at_the_time_of_opening() {
     let text = format!("{HEAD}[builtin.look]\nroughness = 0.5\n");
     let mut panel = panel(&text, "roughness");
     let act = |panel: &Panel, name: &str, value: Value| {
@@ -104,7 +104,7 @@ fn what_was_changed_goes_back_to_what_was_opened() {
     assert_eq!(panel.resets(), 1);
     panel.harness.get_by_label("reset").click();
     panel.harness.run_steps(3);
-    assert!(!panel.text().contains("cuticle"), "unsaid as before: {}", panel.text());
+    assert!(!panel.text().contains("cuticle"), "not in the text, as before: {}", panel.text());
     panel.filter.replace("roughness".into());
     panel.harness.run_steps(3);
     panel.harness.get_by_label("reset").click();
@@ -154,7 +154,7 @@ fn parameters_that_restart_the_scene_are_known() {
 }
 
 #[test]
-fn pigment_takes_the_place_of_colors_in_one_step_and_gives_it_back() {
+fn setting_melanin_replaces_the_colors_in_one_step_and_removing_it_restores_them() {
     let text = "[[groom]]\nfile = \"a.hair\"\n[groom.look]\nroot_color = [0.22, 0.12, 0.055] # chestnut\ntip_color = [0.34, 0.2, 0.1]\n";
     let mut document = document(text);
     let melanin = parameter("look.melanin");
@@ -187,7 +187,7 @@ fn a_camera_is_written_as_a_whole() {
 }
 
 #[test]
-fn equal_ways_of_a_slider_from_0_are_equal_steps() {
+fn a_slider_from_0_is_linear() {
     let mut panel = panel(&format!("{HEAD}look = {{ melanin = 0.9 }}\n"), "look.melanin");
     let rect = panel.harness.query_all_by_role(egui::accesskit::Role::Slider).next().unwrap().rect();
     let key = Key::top("groom").place(0).field("look.melanin");
@@ -204,7 +204,7 @@ fn equal_ways_of_a_slider_from_0_are_equal_steps() {
 }
 
 #[test]
-fn hairs_are_counted_again_when_the_slider_is_released() {
+fn a_new_number_of_hairs_applies_when_the_slider_is_released() {
     let mut panel = panel(HEAD, "on the scalp");
     let rect = panel.harness.query_all_by_role(egui::accesskit::Role::Slider).next().unwrap().rect();
     let begun = panel.session.borrow().begun();
@@ -294,7 +294,7 @@ fn a_search_leaves_the_groups_as_they_were() {
 }
 
 #[test]
-fn the_color_picker_opens_and_its_letters_are_known() {
+fn the_color_picker_opens_and_the_font_has_its_characters() {
     let mut panel = panel(HEAD, "root");
     let button = panel.harness.query_all_by_role(egui::accesskit::Role::ColorWell).next().unwrap();
     button.click();
@@ -304,7 +304,7 @@ fn the_color_picker_opens_and_its_letters_are_known() {
 }
 
 #[test]
-fn no_name_is_cut_off() {
+fn no_label_is_truncated() {
     let panel = panel(HEAD, "nothing is called so");
     let font = egui::TextStyle::Body.resolve(&panel.harness.ctx.global_style());
     let width = |text: &str| {
@@ -331,7 +331,7 @@ fn a_group_is_found_by_its_name() {
 }
 
 #[test]
-fn what_the_window_sees_becomes_the_scenes_camera_in_one_step() {
+fn the_current_view_is_written_as_the_scene_camera_in_one_undo_step() {
     let mut panel = panel(HEAD, "camera");
     panel.harness.get_by_label(TAKE_VIEW).click();
     panel.harness.run_steps(3);

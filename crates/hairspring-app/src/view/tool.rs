@@ -7,7 +7,7 @@ pub const FINGERS: f32 = 2.0;
 
 /// A tool of the left mouse button.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Hand {
+pub enum Tool {
     /// Rotates the view.
     #[default]
     Look,
@@ -25,7 +25,7 @@ pub enum Hand {
     Palm,
 }
 
-impl Hand {
+impl Tool {
     /// Whether the tool has a radius.
     pub fn reaches(self) -> bool {
         matches!(self, Self::Ball | Self::Grab | Self::Comb)
