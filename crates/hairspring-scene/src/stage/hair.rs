@@ -266,7 +266,7 @@ impl StagedHair {
         std::iter::repeat_n(hairs, self.strands.len())
     }
 
-    /// Makes the current state of the hair in `simulation` its groom, with colliders at `colliders`. Styling
+    /// Makes the current state of the hair in `simulation` its groom. `colliders` are where the colliders are. Styling
     /// of follow hairs is not included.
     pub(super) fn rest_as(&mut self, simulation: &Simulation, body: &StagedBody, colliders: &[ColliderPose]) {
         let effects = self.follow.as_mut().map(|follow| follow.set_effects(Effects::default()));

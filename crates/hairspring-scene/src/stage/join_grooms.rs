@@ -9,7 +9,7 @@ use hairspring::{
 use std::sync::Arc;
 
 /// Creates the simulation of all of `hair` at rest, groom after groom. Settings are the scene's, except for
-/// the solver's. The anchor is at `anchor`, and colliders are at `colliders`.
+/// the solver's. `anchor` and `colliders` are the poses of the anchor and the colliders.
 pub(super) fn simulation(
     hair: &[StagedHair],
     scene: &Scene,

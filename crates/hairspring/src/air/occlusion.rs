@@ -13,7 +13,7 @@
 //! at `reach`, as a wake fills up. T is computed at the nodes of the grid and interpolated at points.
 //!
 //! # Missing
-//! Blocked air does not flow around an collider: there is no faster wind at its edges. Follow hairs are
+//! Blocked air does not flow around a collider: there is no faster wind at its edges. Follow hairs are
 //! occluded as their guides are.
 
 use super::AirSample;

@@ -219,7 +219,7 @@ impl Follow {
     }
 
     /// Returns the data of the current frame: the last computed transforms, with guides at `guide_points` [m]
-    /// and colliders `colliders`.
+    /// and `colliders`.
     pub fn interpolation<'a>(
         &'a self,
         guide_points: &'a [Vec3],
