@@ -328,12 +328,18 @@ pub(super) struct Buffer {
 
 /// Required extensions that change nothing which is read here, by the beginning of their names: textures,
 /// materials, lights, metadata, sound, physics and behavior.
-const UNUSED: [&str; 17] = [
+const UNUSED: [&str; 23] = [
     "KHR_mesh_quantization", // Read: an accessor has any component type.
     "KHR_texture_",
     "EXT_texture_",
     "MSFT_texture_",
     "MSFT_packing_",
+    "GOOGLE_texture_",
+    "NV_materials_",
+    "KHR_techniques_",
+    "EXT_mesh_features",
+    "EXT_instance_features",
+    "EXT_structural_metadata",
     "KHR_materials_",
     "EXT_materials_",
     "ADOBE_materials_",

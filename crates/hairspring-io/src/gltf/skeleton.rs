@@ -308,6 +308,14 @@ pub(super) fn walk(
             stack.push(*c);
         }
     }
+    let outside =
+        document.nodes.iter().zip(&reached).filter(|(node, reached)| node.mesh.is_some() && !**reached);
+    match outside.count() {
+        0 => {}
+        count => notes.push(format!(
+            "{count} objects with meshes are not in the file's default scene and are left out; export one scene"
+        )),
+    }
     Ok((order, parents, reached))
 }
 

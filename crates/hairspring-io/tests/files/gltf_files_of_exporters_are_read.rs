@@ -60,6 +60,10 @@ fn textures_and_materials_of_any_extension_are_skipped() {
         "KHR_lights_punctual",
         "KHR_mesh_quantization",
         "VRMC_vrm",
+        "GOOGLE_texture_basis",
+        "NV_materials_mdl",
+        "EXT_mesh_features",
+        "EXT_structural_metadata",
     ] {
         let mut file = GltfFile::tetrahedron();
         file.json["extensionsUsed"] = json!([name]);
@@ -228,6 +232,21 @@ fn a_scene_without_nodes_gives_all_nodes() {
     file.json["scenes"] = json!([]);
     file.json.as_object_mut().unwrap().remove("scene");
     assert!(read_tetrahedron(&file).is_empty());
+}
+
+#[test]
+fn objects_outside_of_the_default_scene_are_noted() {
+    let mut file = GltfFile::tetrahedron();
+    let nodes = file.json["nodes"].as_array_mut().unwrap();
+    let other = nodes.len();
+    nodes.push(json!({"mesh": 0}));
+    let own: Vec<usize> = (0..other).collect();
+    for scenes in [json!([{"nodes": own}, {"nodes": [other]}]), json!([{"nodes": own}])] {
+        file.json["scene"] = json!(0);
+        file.json["scenes"] = scenes;
+        let notes = read_tetrahedron(&file);
+        assert_noted_once(&notes, &["1 objects with meshes are not in the file's default scene"]);
+    }
 }
 
 #[test]
