@@ -50,6 +50,10 @@ class FormatError(Exception):
     """A file that cannot be read or written: one sentence without the name of the file."""
 
 
+class AbsentError(FormatError):
+    """A file that has nothing of the kind that is to be read."""
+
+
 FACTORS = ("stiffness", "damping", "drag", "friction", "charge", "density")
 """Names of the attributes with a number for each strand: factors of the material, and the share of strands that is kept."""
 

@@ -55,12 +55,9 @@ def used_files(path: str) -> list[str]:
     """Returns the layers and other files that a USD file consists of; none for Alembic. What is missing is left out."""
     if Path(path).suffix.lower() not in USD:
         return []
-    from pxr import UsdUtils
+    from . import usd
 
-    layers, assets, _ = UsdUtils.ComputeAllDependencies(str(path))
-    found = [layer.realPath for layer in layers] + list(assets)
-    # A file in an archive has brackets after the name of the archive.
-    return sorted({file for file in found if Path(file).is_file()})
+    return usd.used_files(path)
 
 
 def write_cache(path: str, fps: float, first_frame: float, frames: int, source: str, over: str | None, grooms: list[dict]):

@@ -1,11 +1,29 @@
-"""Points on curves, values along them (OpenUSD, "UsdGeomBasisCurves"), and triangles of polygons."""
+"""Points on curves, values along them (OpenUSD, "UsdGeomBasisCurves"), triangles of polygons, and times of samples."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from .formats import FormatError
+
 # Most corners of a polygon that is not convex; larger ones become fans.
 MAX_CONCAVE = 128
+
+DEFAULT_RADIUS = "left out, so that its strands have the radius of the others, or the default"
+"""What happens without widths."""
+
+
+def distinct(times: set[float] | list[float]) -> np.ndarray:
+    """Sorted times; of those that differ by rounding, the first."""
+    ordered = np.array(sorted(times), np.float64)
+    return ordered[np.concatenate([[True], np.diff(ordered) > 1e-5])] if len(ordered) else ordered
+
+
+def spacing(times: np.ndarray) -> float:
+    """The least distance of two or more sorted times; their mean distance if all are equal but for rounding."""
+    steps = np.diff(times)
+    mean = float(times[-1] - times[0]) / len(steps)
+    return mean if steps.max() - steps.min() < 1e-3 * mean else float(steps.min())
 
 
 def with_phantoms(points: np.ndarray, basis: str) -> np.ndarray:
@@ -39,6 +57,57 @@ def on_curve(points: np.ndarray, kind: str, basis: str, wrap: str) -> np.ndarray
     return control[1:-1]
 
 
+def check_counts(name: str, counts: np.ndarray, kind: str, basis: str) -> None:
+    """Refuses Bézier curves of another number of control points than 3 for each segment and 1."""
+    wrong = counts[(counts < 4) | (counts % 3 != 1)] if kind == "cubic" and basis == "bezier" else counts[:0]
+    if len(wrong):
+        raise FormatError(f"{name} has a Bézier curve of {wrong[0]} points; a curve of n segments must have 3 n + 1")
+
+
+def fitted(
+    values: np.ndarray | None,
+    kind: str,
+    each: np.ndarray,
+    what: str,
+    notes: list[str],
+    size: int = 1,
+    instead: str = "left out",
+) -> tuple[np.ndarray | None, str]:
+    """Values of curves and their interpolation if there are as many as it needs; otherwise None, and a note.
+
+    `each` is as the `counts` of `expand`. One value holds for all curves. `size` is the least number of components of a value,
+    and `instead` says what happens without the values.
+    """
+    if values is None or len(values) == 0:
+        return None, kind
+    if (values.shape[1] if values.ndim == 2 else values.ndim) < size or (size == 1 and values.ndim != 1):
+        notes.append(f"{what} does not have {size} numbers for each value; {instead}")
+        return None, kind
+    if kind == "constant" or len(values) == 1:
+        return values, "constant"
+    varying, vertex = (int(counts.sum()) for counts in each)
+    needs = {"uniform": each.shape[1], "varying": varying, "faceVarying": varying, "vertex": vertex}
+    if needs.get(kind) == len(values):
+        return values, kind
+    if kind in ("varying", "faceVarying", "vertex") and len(values) in (vertex, varying):
+        return values, "vertex" if len(values) == vertex else "varying"
+    if kind in needs:
+        notes.append(f"{what} has {len(values)} values, and {kind} interpolation needs {needs[kind]}; {instead}")
+    else:
+        notes.append(f"{what} has the unknown interpolation '{kind}'; {instead}")
+    return None, kind
+
+
+def of_strands(values: np.ndarray | None, strands: int, what: str, notes: list[str]) -> np.ndarray | None:
+    """Values that are one for each strand, or one for all; otherwise None, and a note."""
+    if values is None or len(values) == strands:
+        return values
+    if len(values) == 1:
+        return np.repeat(values, strands, axis=0)
+    notes.append(f"{what} has {len(values)} values for {strands} strands; left out")
+    return None
+
+
 def expand(values: np.ndarray, interpolation: str, curve: int, counts: np.ndarray, points: int) -> np.ndarray | None:
     """Returns the values of one curve at its `points` points, from the values of the prim.
 
@@ -50,7 +119,7 @@ def expand(values: np.ndarray, interpolation: str, curve: int, counts: np.ndarra
         return np.repeat(values[:1], points, axis=0)
     if interpolation == "uniform":
         return np.repeat(values[curve : curve + 1], points, axis=0)
-    each = counts[0 if interpolation == "varying" else 1]
+    each = counts[1 if interpolation == "vertex" else 0]
     first = int(each[:curve].sum())
     own = values[first : first + int(each[curve])]
     if len(own) == points:
@@ -62,6 +131,12 @@ def expand(values: np.ndarray, interpolation: str, curve: int, counts: np.ndarra
     flat = own.reshape(len(own), -1)
     columns = [np.interp(to, at, flat[:, k]) for k in range(flat.shape[1])]
     return np.stack(columns, axis=1).reshape(points, *own.shape[1:])
+
+
+def naming(names: list[str]) -> str:
+    """The first three names, and the number of the others."""
+    more = f" and {len(names) - 3} more" if len(names) > 3 else ""
+    return ", ".join(names[:3]) + more
 
 
 def varying_count(control: int, kind: str, basis: str, wrap: str) -> int:

@@ -13,8 +13,8 @@ use hairspring::{
     groom::{Groom, Repairs},
 };
 use hairspring_io::{
-    Format, Motion, ReadOptions, SkinDistance, pc2, read_body, read_bones, read_groom, read_motion,
-    read_scene,
+    ErrorKind, Format, Motion, ReadOptions, SkinDistance, pc2, read_body, read_bones, read_groom,
+    read_motion, read_scene,
 };
 use hairspring_scene::{Guides, Scene};
 use serde_json::{Value, json};
@@ -62,7 +62,8 @@ fn external(path: &Path, units: &ReadOptions, console: Console) -> Result<Value,
     });
     match (hair, mesh) {
         (Err(why), Err(_)) => return Err(Fault::reading(why, path)),
-        (Err(why), _) | (_, Err(why)) => console.note(why),
+        (Err(why), _) | (_, Err(why)) if why.kind() == ErrorKind::Unsupported => console.note(why),
+        (Err(why), _) | (_, Err(why)) => return Err(Fault::reading(why, path)),
         _ => {}
     }
     Ok(found)

@@ -4,7 +4,7 @@ use crate::{console::Console, fault::Fault, frames};
 use clap::{Args, ValueEnum};
 use glam::Vec3;
 use hairspring::groom::Repairs;
-use hairspring_io::{Axis, Format, Inputs, ReadOptions, read_body, read_groom, read_scene};
+use hairspring_io::{Axis, ErrorKind, Format, Inputs, ReadOptions, read_body, read_groom, read_scene};
 use hairspring_scene::{Guides, Scene, SceneGroom};
 use std::path::{Path, PathBuf};
 
@@ -124,7 +124,7 @@ impl Input {
             }
             let mut scene = alone(path, loaded.value);
             if Format::of(path).is_some_and(|format| Format::EXTERNAL.contains(&format)) {
-                self.add_body(&mut scene, console);
+                self.add_body(&mut scene, console)?;
             }
             scene
         };
@@ -140,14 +140,21 @@ impl Input {
 
 impl Input {
     /// Adds the meshes of the groom's own file to the scene, if it has any.
-    fn add_body(&self, scene: &mut Scene, console: Console) {
+    ///
+    /// # Errors
+    /// Returns an error if they cannot be read.
+    fn add_body(&self, scene: &mut Scene, console: Console) -> Result<(), Fault> {
         match read_body(&self.path, &self.units.into()) {
             Ok(loaded) => {
                 print_notes(&loaded.notes, &loaded.repairs, console);
                 (scene.body, scene.vertex_cache) = (Some(loaded.value.body), loaded.value.vertex_cache);
             }
-            Err(why) => console.note(format_args!("the hair has no body: {why}")),
+            Err(why) if why.kind() == ErrorKind::Unsupported => {
+                console.note(format_args!("the hair has no body: {why}"));
+            }
+            Err(why) => return Err(Fault::reading(why, &self.path)),
         }
+        Ok(())
     }
 }
 

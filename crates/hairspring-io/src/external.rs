@@ -19,6 +19,15 @@ pub struct ExternalFile<T> {
     pub notes: Vec<String>,
 }
 
+/// Why an external reader returns nothing, in a sentence without the name of the file.
+#[derive(Clone, Debug)]
+pub enum ExternalError {
+    /// The file has nothing of the kind that was to be read.
+    Absent(String),
+    /// The content of the file is wrong.
+    Invalid(String),
+}
+
 /// Reads and writes the formats of [`Format::EXTERNAL`]. Errors are sentences without the name of the file.
 pub trait ExternalFormats: Send + Sync {
     /// Reads all curves of a file as one groom.
@@ -29,7 +38,7 @@ pub trait ExternalFormats: Send + Sync {
         &self,
         path: &Path,
         options: &ReadOptions,
-    ) -> std::result::Result<ExternalFile<Groom>, String>;
+    ) -> std::result::Result<ExternalFile<Groom>, ExternalError>;
 
     /// Reads the meshes of a file as one body.
     ///
@@ -39,7 +48,7 @@ pub trait ExternalFormats: Send + Sync {
         &self,
         path: &Path,
         options: &ReadOptions,
-    ) -> std::result::Result<ExternalFile<Character>, String>;
+    ) -> std::result::Result<ExternalFile<Character>, ExternalError>;
 
     /// Returns the other files that `path` consists of, such as the layers of a USD stage.
     ///
@@ -126,15 +135,18 @@ fn with_formats<T>(
 /// Reads a file, and records the content of all files that it consists of for a manifest.
 fn read<T>(
     path: &Path,
-    read: impl FnOnce(&dyn ExternalFormats) -> std::result::Result<T, String>,
+    read: impl FnOnce(&dyn ExternalFormats) -> std::result::Result<T, ExternalError>,
 ) -> Result<T> {
     // Reports a missing file as for other formats.
     load::bytes_of(path)?;
-    let (value, files) = with_formats(path, |formats| {
-        Ok(read(formats).and_then(|value| Ok((value, formats.used_files(path)?))))
-    })?
-    .map_err(|reason| Problem::whole(reason).in_file(path))?;
-    for file in files.iter().filter(|file| *file != path) {
+    let wrong = |reason: String| Problem::whole(reason).in_file(path);
+    let (value, files) = with_formats(path, |formats| Ok((read(formats), formats.used_files(path))))?;
+    let value = value.map_err(|error| match error {
+        ExternalError::Absent(reason) => Error::Unsupported { path: path.to_owned(), reason },
+        ExternalError::Invalid(reason) => wrong(reason),
+    })?;
+    let own = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    for file in files.map_err(wrong)?.iter().filter(|file| **file != own) {
         load::bytes_of(file)?;
     }
     Ok(value)

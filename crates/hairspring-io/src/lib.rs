@@ -43,8 +43,8 @@ pub mod usc;
 
 pub use error::{Error, ErrorKind, Place, Problem, Result};
 pub use external::{
-    CacheDescription, CacheWriter, ExternalFile, ExternalFormats, check_cache_format, set_external_formats,
-    write_cache,
+    CacheDescription, CacheWriter, ExternalError, ExternalFile, ExternalFormats, check_cache_format,
+    set_external_formats, write_cache,
 };
 pub use frame_writer::{FrameError, FrameWriter};
 pub use gltf::Character;

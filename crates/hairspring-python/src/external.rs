@@ -7,7 +7,8 @@ use hairspring::{
     groom::Groom,
 };
 use hairspring_io::{
-    Axis, CacheDescription, CacheWriter, Character, ExternalFile, ExternalFormats, ReadOptions, obj,
+    Axis, CacheDescription, CacheWriter, Character, ExternalError, ExternalFile, ExternalFormats,
+    ReadOptions, obj,
 };
 use hairspring_scene::VertexCache;
 use numpy::PyArray1;
@@ -27,13 +28,28 @@ fn with_host<T>(act: impl for<'py> FnOnce(Bound<'py, PyModule>) -> PyResult<T>) 
     })
 }
 
+/// The same for reading: an `AbsentError` of Python means that the file has nothing of this kind.
+fn read_with_host<T>(
+    act: impl for<'py> FnOnce(Bound<'py, PyModule>) -> PyResult<T>,
+) -> Result<T, ExternalError> {
+    Python::attach(|py| {
+        py.import("hairspring.host").and_then(act).map_err(|error| {
+            let sentence = error.value(py).to_string();
+            match error.get_type(py).name() {
+                Ok(name) if name == "AbsentError" => ExternalError::Absent(sentence),
+                _ => ExternalError::Invalid(sentence),
+            }
+        })
+    })
+}
+
 fn up(options: &ReadOptions) -> Option<&'static str> {
     options.up.map(|up| if up == Axis::Z { "z" } else { "y" })
 }
 
 impl ExternalFormats for PythonFormats {
-    fn read_groom(&self, path: &Path, options: &ReadOptions) -> Result<ExternalFile<Groom>, String> {
-        with_host(|host| {
+    fn read_groom(&self, path: &Path, options: &ReadOptions) -> Result<ExternalFile<Groom>, ExternalError> {
+        read_with_host(|host| {
             let read = host.call_method1("read_groom", (path, options.scale, up(options)))?;
             let (arrays, group_names, unit_known, notes): (Bound<PyDict>, _, bool, _) = read.extract()?;
             let density: Option<Floats> = arrays.get_item("density")?.map(|d| d.extract()).transpose()?;
@@ -50,8 +66,12 @@ impl ExternalFormats for PythonFormats {
         })
     }
 
-    fn read_body(&self, path: &Path, options: &ReadOptions) -> Result<ExternalFile<Character>, String> {
-        with_host(|host| {
+    fn read_body(
+        &self,
+        path: &Path,
+        options: &ReadOptions,
+    ) -> Result<ExternalFile<Character>, ExternalError> {
+        read_with_host(|host| {
             let read = host.call_method1("read_body", (path, options.scale, up(options)))?;
             #[expect(clippy::type_complexity, reason = "the tuple that Python returns")]
             let (vertices, triangles, uvs, colors, parts, frames, rate, unit_known, notes): (

@@ -8,8 +8,10 @@ from typing import Iterator
 import numpy as np
 from alembic3d import Abc, AbcGeom
 
-from ..formats import FACTORS, MAX_POSITIONS, MAX_SAMPLES, Curves, FormatError, MovingMesh, as_lengths_and_points, guides_from_flags
-from ..shapes import expand, on_curve, triangulate, varying_count
+from ..formats import FACTORS, MAX_POSITIONS, MAX_RATE, MAX_SAMPLES, Curves, FormatError, MovingMesh, as_lengths_and_points
+from ..formats import AbsentError, guides_from_flags
+from ..shapes import DEFAULT_RADIUS, check_counts, distinct, expand, fitted, naming, of_strands, on_curve, spacing, triangulate
+from ..shapes import varying_count
 
 BASES = {"kBezierBasis": "bezier", "kBsplineBasis": "bspline", "kCatmullromBasis": "catmullRom"}
 SCOPES = {
@@ -27,7 +29,9 @@ def open_archive(path: Path):
     try:
         return Abc.IArchive(str(path))
     except RuntimeError as error:
-        raise FormatError(f"the archive cannot be opened ({str(error).splitlines()[0]})") from None
+        if "HDF5" in str(error):
+            raise FormatError("the archive is of the older kind HDF5; convert it with `abcconvert -toOgawa`") from None
+        raise FormatError("the archive cannot be opened: the file is damaged or is not Alembic; export it again") from None
 
 
 def objects(parent, kind, matrix=None) -> Iterator[tuple]:
@@ -41,6 +45,26 @@ def objects(parent, kind, matrix=None) -> Iterator[tuple]:
             yield from objects(child, kind, [*above, AbcGeom.IXform(parent, child.getName()).getSchema()])
         else:
             yield from objects(child, kind, above)
+
+
+def visible(parent, kind, notes: list[str]) -> Iterator[tuple]:
+    """Like `objects`, without hidden objects and those without samples, which notes name."""
+    hidden, empty = [], []
+    for found, above in objects(parent, kind):
+        if AbcGeom.IsAncestorInvisible(found, Abc.ISampleSelector()):
+            hidden.append(found.getFullName())
+        elif found.getSchema().getNumSamples() == 0:
+            empty.append(found.getFullName())
+        else:
+            yield found, above
+    for names, why in ((hidden, "hidden"), (empty, "without samples")):
+        if names:
+            notes.append(f"objects that are {why} are left out ({naming(names)})")
+
+
+def because(notes: list[str]) -> str:
+    """What notes say about the cause of an error, in brackets."""
+    return f" ({'; '.join(notes)})" if notes else ""
 
 
 def world(above: list, selector) -> np.ndarray:
@@ -100,16 +124,12 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
     """
     archive = open_archive(path)
     to = (Z_UP.T if (up or "y").lower() == "z" else np.eye(3)) * (1.0 if scale is None else scale)
-    read, notes = [], []
-    for curves, above in objects(archive.getTop(), AbcGeom.ICurves):
-        schema = curves.getSchema()
-        if schema.getNumSamples() == 0:
-            notes.append(f"{curves.getFullName()} has no samples; left out")
-            continue
-        read.append(read_object(curves.getFullName(), schema, above, to, notes))
-    read = [r for r in read if r]
+    notes: list[str] = []
+    found = list(visible(archive.getTop(), AbcGeom.ICurves, notes))
+    parts = [read_object(curves.getFullName(), curves.getSchema(), above, to, notes) for curves, above in found]
+    read = [part for part in parts if part]
     if not read:
-        raise FormatError("the archive has no curves" + (f" ({'; '.join(notes)})" if notes else ""))
+        raise AbsentError("the archive has no curves" + because(notes))
     return join(read, notes)
 
 
@@ -125,25 +145,43 @@ def read_object(name: str, schema, above: list, to: np.ndarray, notes: list[str]
     control = place(sample.getPositions(), matrix, to)
     if counts.sum() != len(control):
         raise FormatError(f"{name} has {len(control)} points, and its counts name {counts.sum()}")
-    kind = "linear" if str(sample.getType()).endswith("kLinear") else "cubic"
+    kind = "cubic" if str(sample.getType()).endswith("kCubic") else "linear"
+    if str(sample.getType()).endswith("kVariableOrder"):
+        notes.append(f"{name} has curves of variable order; their control points are read as strands")
     basis_name = str(sample.getBasis()).split(".")[-1]
-    basis = BASES.get(basis_name, "bspline")
-    if kind == "cubic" and basis_name == "kNoBasis":
+    basis = BASES.get(basis_name, "")
+    if kind == "cubic" and basis_name in ("kHermiteBasis", "kPowerBasis"):
+        notes.append(f"{name} has curves of the {basis_name[1:-5]} basis; left out: export them as B-splines or Bézier curves")
+        return None
+    if kind == "cubic" and not basis:
         kind = "linear"
+    check_counts(name, counts, kind, basis)
     length = float(np.cbrt(abs(np.linalg.det(matrix[:3, :3] @ to))))
     each = np.array([[varying_count(int(n), kind, basis, "nonperiodic") for n in counts], counts])
-    width, width_scope = attribute(schema, FLOATS, "groom_width")
+    n = len(counts)
+
+    def fit(size: int, kinds: tuple, *names: str, instead: str = "left out") -> tuple[np.ndarray | None, str]:
+        values, scope = attribute(schema, kinds, *names)
+        if values is not None and size > 1 and values.ndim == 1 and values.size % size == 0:
+            values = values.reshape(-1, size)
+        return fitted(values, scope, each, f"`{names[0]}` of {name}", notes, size, instead)
+
+    def spread(kinds: tuple, attribute_name: str) -> np.ndarray | None:
+        return of_strands(attribute(schema, kinds, attribute_name)[0], n, f"`{attribute_name}` of {name}", notes)
+
+    def triples(kinds: tuple, attribute_name: str) -> np.ndarray | None:
+        values = attribute(schema, kinds, attribute_name)[0]
+        if values is None or values.size == 3 * n:
+            return None if values is None else values.reshape(n, 3)
+        notes.append(f"`{attribute_name}` of {name} does not have three numbers for each strand; left out")
+        return None
+
+    width, width_scope = fit(1, FLOATS, "groom_width", instead=DEFAULT_RADIUS)
     if width is None and schema.getWidthsParam().valid():
         width, width_scope = parameter_values(schema.getWidthsParam())
-    color, color_scope = attribute(schema, COLORS, "groom_color", "Cd", "displayColor")
-    uv, uv_scope = attribute(schema, PAIRS, "groom_root_uv", "surface_uv_coordinate", "st")
-    closest, _ = attribute(schema, TRIPLES, "groom_closest_guides")
-    weights, _ = attribute(schema, (AbcGeom.IV3fGeomParam, AbcGeom.IFloatGeomParam), "groom_guide_weights")
-    group, _ = attribute(schema, INTEGERS, "groom_group_id")
-    ids, _ = attribute(schema, INTEGERS, "groom_id")
-    guide, _ = attribute(schema, INTEGERS, "groom_guide")
-    n = len(counts)
-    spread = lambda a: None if a is None else (np.repeat(a, n) if len(a) == 1 else a if len(a) == n else None)
+        width, width_scope = fitted(width, width_scope, each, f"`width` of {name}", notes, instead=DEFAULT_RADIUS)
+    color, color_scope = fit(3, COLORS, "groom_color", "Cd", "displayColor")
+    uv, uv_scope = fit(2, PAIRS, "groom_root_uv", "surface_uv_coordinate", "st")
     strands, radii, colors, uvs, start = [], [], [], [], 0
     for s, count in enumerate(counts):
         points = on_curve(control[start : start + count], kind, basis, "nonperiodic")
@@ -153,21 +191,20 @@ def read_object(name: str, schema, above: list, to: np.ndarray, notes: list[str]
         radii.append(np.full(len(points), np.nan) if along is None else 0.5 * length * along)
         along = None if color is None else expand(color, color_scope, s, each, len(points))
         colors.append(np.full((len(points), 3), np.nan) if along is None else along)
-        root = None if uv is None else expand(uv.reshape(-1, 2), uv_scope, s, each, max(len(points), 1))
-        uvs.append(np.full(2, np.nan) if root is None else root[0])
-    triples = lambda a: None if a is None or a.size != 3 * n else np.asarray(a).reshape(n, 3)
+        root = None if uv is None else expand(uv, uv_scope, s, each, max(len(points), 1))
+        uvs.append(np.full(2, np.nan) if root is None else root[0][:2])
     return {
         "name": name,
         "strands": strands,
         "radii": radii,
         "colors": colors,
         "uvs": uvs,
-        "group": spread(group),
-        "ids": spread(ids),
-        "guide": spread(guide),
-        "closest": triples(closest),
-        "weights": triples(weights),
-        "factors": {name: spread(attribute(schema, FLOATS, name)[0]) for name in FACTORS},
+        "group": spread(INTEGERS, "groom_group_id"),
+        "ids": spread(INTEGERS, "groom_id"),
+        "guide": spread(INTEGERS, "groom_guide"),
+        "closest": triples(TRIPLES, "groom_closest_guides"),
+        "weights": triples((AbcGeom.IV3fGeomParam, AbcGeom.IFloatGeomParam), "groom_guide_weights"),
+        "factors": {factor: spread(FLOATS, factor) for factor in FACTORS},
     }
 
 
@@ -235,25 +272,46 @@ def join(read: list[dict], notes: list[str]) -> Curves:
     return curves
 
 
-def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> MovingMesh:
-    """Reads all polygon meshes of an archive as one body, with the motion of their vertices."""
-    archive = open_archive(path)
-    to = (Z_UP.T if (up or "y").lower() == "z" else np.eye(3)) * (1.0 if scale is None else scale)
-    meshes = list(objects(archive.getTop(), AbcGeom.IPolyMesh))
-    meshes = [(m, above) for m, above in meshes if m.getSchema().getNumSamples() > 0]
-    if not meshes:
-        raise FormatError("the archive has no polygon meshes")
+def sample_times(meshes: list[tuple], notes: list[str]) -> tuple[np.ndarray, float]:
+    """The times [s] at which any of `meshes` moves, equally spaced, and their rate [Hz]; one time if nothing moves.
+
+    They are as close as the closest two samples, but not closer than 1/240 s; a note says if samples are closer."""
     times: set[float] = set()
     for mesh, above in meshes:
         for schema in [mesh.getSchema(), *above]:
             sampling, count = schema.getTimeSampling(), schema.getNumSamples()
             if count > 1:
-                times.update(round(sampling.getSampleTime(k), 9) for k in range(count))
-    steps = np.diff(sorted(times)) if len(times) > 1 else np.zeros(0)
-    step = float(np.median(steps)) if len(steps) else 1 / 24
-    if len(times) > 1 and (max(times) - min(times)) / step > MAX_SAMPLES:
-        raise FormatError(f"the samples of the meshes span more than {MAX_SAMPLES} frames; shorten the motion")
-    at = np.arange(min(times), max(times) + 0.5 * step, step) if len(times) > 1 else np.zeros(1)
+                times.update(sampling.getSampleTime(k) for k in range(count))
+    ordered = distinct(times)
+    if len(ordered) < 2:
+        return np.zeros(1), 24.0
+    closest, span = spacing(ordered), float(ordered[-1] - ordered[0])
+    if closest < 0.99 / MAX_RATE:
+        notes.append(f"samples of the meshes are closer than 1/{MAX_RATE:g} s; their motion is sampled at {MAX_RATE:g} Hz")
+    step = max(closest, 1 / MAX_RATE)
+    if abs(span / step - round(span / step)) < 0.01:
+        # Times are rounded.
+        step = span / round(span / step)
+    count = int(np.ceil(span / step - 1e-6)) + 1
+    if count > MAX_SAMPLES:
+        raise FormatError(f"the samples of the meshes span {count} frames; the limit is {MAX_SAMPLES}, so shorten the motion")
+    return ordered[0] + step * np.arange(count), 1 / step
+
+
+def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> MovingMesh:
+    """Reads all polygon and subdivision meshes of an archive as one body, with the motion of their vertices.
+
+    Subdivision meshes are read as polygons between their control points."""
+    archive = open_archive(path)
+    to = (Z_UP.T if (up or "y").lower() == "z" else np.eye(3)) * (1.0 if scale is None else scale)
+    notes: list[str] = []
+    meshes = [found for kind in (AbcGeom.IPolyMesh, AbcGeom.ISubD) for found in visible(archive.getTop(), kind, notes)]
+    patches = [patch.getFullName() for patch, _ in objects(archive.getTop(), AbcGeom.INuPatch)]
+    if patches:
+        notes.append(f"NURBS patches are left out ({naming(patches)}); convert them to meshes")
+    if not meshes:
+        raise AbsentError("the archive has no polygon meshes" + because(notes))
+    at, rate = sample_times(meshes, notes)
     triangles, parts, total = [], [], 0
     sizes = []
     for mesh, above in meshes:
@@ -264,7 +322,9 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
         counts = np.asarray(sample.getFaceCounts()).astype(np.int64)
         indices = np.asarray(sample.getFaceIndices()).astype(np.int64)
         count = len(sample.getPositions())
-        if counts.sum() != len(indices) or (len(indices) and not 0 <= indices.min() <= indices.max() < count):
+        if not len(counts) or not count:
+            raise FormatError(f"{mesh.getFullName()} has no faces or no points")
+        if counts.min() < 0 or counts.sum() != len(indices) or (len(indices) and not 0 <= indices.min() <= indices.max() < count):
             raise FormatError(f"the faces of {mesh.getFullName()} name vertices that do not exist")
         own = triangulate(counts, indices, np.array(sample.getPositions(), np.float64).reshape(-1, 3))
         # Alembic's faces are clockwise seen from outside, unless the transform mirrors them.
@@ -289,7 +349,6 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
             frames[f, first : first + size] = points
             first += size
     moves = len(at) > 1 and not np.allclose(frames, frames[:1], atol=1e-7)
-    rate = 1 / step
-    notes = [f"{len(at)} frames at {rate:g} Hz move the body's vertices"] if moves else []
+    notes += [f"{len(at)} frames at {rate:g} Hz move the body's vertices"] if moves else []
     joined = np.concatenate(triangles).astype(np.uint32)
     return MovingMesh(frames[0].copy(), joined, None, parts, frames if moves else None, rate, notes)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
+import shutil
 from pathlib import Path
+from typing import Any
 
 import imath
 import numpy as np
@@ -13,6 +16,9 @@ from ..description import Description, MovingGroom, identifier
 
 VERSION = (1, 5)
 """Version of Unreal's groom schema."""
+
+NOT_CREATED = "the file cannot be created; check that its folder exists and that you may write there"
+NOT_WRITTEN = "the disk may be full, or a limit on the size of files is reached; free some space and run it again"
 
 Scope = AbcGeom.GeometryScope
 
@@ -56,11 +62,30 @@ class CurvesWriter:
     def __init__(self, path: str | os.PathLike, description: Description):
         self.path, self.description = Path(path), description
         self.pending = self.path.with_name(f".hairspring-{os.getpid()}-{self.path.name}")
+        self.objects: list[dict] = []
+        self.sampling: Any = None
+        self.archive: Any = None
+        # Whether the stream has failed. The library ends the process if such an archive is destroyed.
+        self.failed = False
+        grooms = description.grooms
+        # What is written for each object and sample when the archive is closed.
+        self.closing = (1 << 20) + 1024 * description.frames * len(grooms)
+        self._require(sum(64 * (len(groom.points) + len(groom.counts)) for groom in grooms))
+        try:
+            self._begin()
+        except BaseException as error:
+            self.failed = isinstance(error, RuntimeError)
+            self.discard()
+            if self.failed:
+                raise OSError(NOT_CREATED) from None
+            raise
+
+    def _begin(self) -> None:
+        description = self.description
         text = f"from {description.source}" if description.source else "hair"
         self.archive = Abc.CreateArchiveWithInfo(str(self.pending), description.fps, "Hairspring", text)
         sampling = AbcCoreAbstract.TimeSampling(1 / description.fps, description.first_frame / description.fps)
         self.sampling = Abc.Argument(self.archive.addTimeSampling(sampling))
-        self.objects: list[dict] = []
         taken: set[str] = set()
         first = 0
         for groom in description.grooms:
@@ -107,30 +132,71 @@ class CurvesWriter:
     def frame(self, frame: float, points: np.ndarray, velocities: np.ndarray) -> None:
         """Writes the points of all grooms [points, 3] [m] and their velocities [m/s] at the next frame."""
         del frame  # Samples are at equal times, one after the other.
-        for item in self.objects:
-            own = points[item["index"]]
-            width = AbcGeom.OFloatGeomParamSample(item["width"], Scope.kVertexScope)
-            sample = AbcGeom.OCurvesSchemaSample(
-                _vectors(own), item["counts"], AbcGeom.CurveType.kLinear, AbcGeom.CurvePeriodicity.kNonPeriodic, width
+        # Positions, velocities and widths of each point, with room for what else a sample has.
+        self._require(sum(32 * len(item["index"]) + 4 * len(item["counts"]) + 4096 for item in self.objects))
+        try:
+            for item in self.objects:
+                self._set(item, points[item["index"]], velocities[item["index"]])
+        except RuntimeError:
+            self.failed = True
+            raise OSError(NOT_WRITTEN) from None
+
+    @staticmethod
+    def _set(item: dict, points: np.ndarray, velocities: np.ndarray) -> None:
+        """Writes the next sample of an object."""
+        width = AbcGeom.OFloatGeomParamSample(item["width"], Scope.kVertexScope)
+        sample = AbcGeom.OCurvesSchemaSample(
+            _vectors(points), item["counts"], AbcGeom.CurveType.kLinear, AbcGeom.CurvePeriodicity.kNonPeriodic, width
+        )
+        # Blender reads curves with the default basis as Bézier curves, whatever their type.
+        sample.setBasis(AbcGeom.BasisType.kNoBasis)
+        sample.setVelocities(_vectors(velocities))
+        low, high = (imath.V3d(*map(float, corner)) for corner in (points.min(axis=0), points.max(axis=0)))
+        sample.setSelfBounds(imath.Box3d(low, high))
+        item["schema"].set(sample)
+
+    def _require(self, size: int) -> None:
+        """Refuses to write `size` more bytes if the disk has no room for them and for the end of the file.
+
+        The library ends the process if the disk is full when it closes the archive.
+        """
+        try:
+            free, needed = shutil.disk_usage(self.path.parent).free, size + self.closing
+        except OSError:
+            # The folder is missing, or the system does not say.
+            return
+        if free < needed:
+            raise OSError(
+                f"the disk is full: {free / 1e6:.1f} MB are free, and the next frame and the end of the file need"
+                f" {needed / 1e6:.1f} MB; free some space and run it again"
             )
-            # Blender reads curves with the default basis as Bézier curves, whatever their type.
-            sample.setBasis(AbcGeom.BasisType.kNoBasis)
-            sample.setVelocities(_vectors(velocities[item["index"]]))
-            low, high = (imath.V3d(*map(float, corner)) for corner in (own.min(axis=0), own.max(axis=0)))
-            sample.setSelfBounds(imath.Box3d(low, high))
-            item["schema"].set(sample)
 
     def finish(self) -> None:
-        """Completes the file."""
-        self._close()
-        with open(self.pending, "rb") as written:
-            os.fsync(written.fileno())
-        os.replace(self.pending, self.path)
+        """Completes the file. If that fails, nothing is left of it."""
+        try:
+            self._require(0)
+            self._close()
+            with open(self.pending, "rb") as written:
+                os.fsync(written.fileno())
+            os.replace(self.pending, self.path)
+        except BaseException:
+            self.discard()
+            raise
 
     def discard(self) -> None:
         """Removes what was written."""
+        if self.pending.exists():
+            # The archive needs room to be closed.
+            os.truncate(self.pending, 0)
+        if self.failed:
+            self._abandon()
         self._close()
         self.pending.unlink(missing_ok=True)
+
+    def _abandon(self) -> None:
+        """Keeps the archive and its objects alive for ever, so that the library does not try to complete the file."""
+        for kept in (self.archive, self.sampling, *(item["schema"] for item in self.objects)):
+            ctypes.pythonapi.Py_IncRef(ctypes.py_object(kept))
 
     def _close(self) -> None:
         # The archive is written when its last object is destroyed.

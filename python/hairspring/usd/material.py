@@ -66,7 +66,7 @@ def read(prim: Usd.Prim, widths: bool, notes: list[str]) -> tuple[float | None, 
     bound, _ = UsdShade.MaterialBindingAPI(prim).ComputeBoundMaterial("physics")
     found = bound.GetPrim() if bound else None
     schemas = found.GetMetadata("apiSchemas") if found else None
-    if not schemas or SCHEMA not in schemas.GetAppliedItems():
+    if found is None or not schemas or SCHEMA not in schemas.GetAppliedItems():
         return None, None
     unit = UsdGeom.GetStageMetersPerUnit(prim.GetStage())
 

@@ -6,11 +6,11 @@ import os
 from pathlib import Path
 
 import numpy as np
-from pxr import Gf, Kind, Sdf, Usd, UsdGeom, Vt
+from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, Vt
 
 from ..description import Description, MovingGroom, identifier
 from . import material
-from .read import open_stage, space, world
+from .read import open_stage, quiet, space, world
 
 DEFORMABLE = "PhysicsCurvesDeformableSimAPI"
 """The applied schema of curves that a simulation deforms (AOUSD proposal "Deformable Body Physics", curves)."""
@@ -35,7 +35,14 @@ class CurvesWriter:
         if self.path.suffix == ".usdz":
             raise ValueError("a .usdz package cannot be written frame by frame; write .usdc and package it with `usdzip`")
         self.pending = self.path.with_name(f".hairspring-{os.getpid()}-{self.path.name}")
-        self.layer = Sdf.Layer.CreateNew(str(self.pending))
+        try:
+            with quiet():
+                self.layer = Sdf.Layer.CreateNew(str(self.pending))
+        except Tf.ErrorException:
+            self.layer = None
+        if not self.layer:
+            self.pending.unlink(missing_ok=True)
+            raise OSError("the file cannot be created; check that its folder exists and that you may write there")
         self.stage = Usd.Stage.Open(self.layer)
         # Curves, their points, and the transform to their own space, if it is not that of the file.
         self.targets: list[tuple[UsdGeom.BasisCurves, slice, tuple[np.ndarray, np.ndarray] | None]] = []
@@ -141,7 +148,7 @@ class CurvesWriter:
         if groom.colors is not None and complete:
             colors = Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(groom.colors[points], np.float32))
             primvar("displayColor", types.Color3fArray, colors, UsdGeom.Tokens.vertex)
-        if groom.guides is not None and complete:
+        if groom.guides is not None and groom.guide_weights is not None and complete:
             closest = Vt.Vec3iArray.FromNumpy(np.ascontiguousarray(groom.guides[own], np.int32))
             weights = Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(groom.guide_weights[own], np.float32))
             primvar("groom_closest_guides", types.Int3Array, closest)
@@ -184,13 +191,26 @@ class CurvesWriter:
             curves.CreateExtentAttr().Set(Vt.Vec3fArray([Gf.Vec3f(*map(float, low)), Gf.Vec3f(*map(float, high))]), time)
 
     def finish(self) -> None:
-        """Completes the file."""
-        self.layer.Save()
-        self.targets.clear()
-        self.stage = self.layer = None
-        with open(self.pending, "rb") as written:
-            os.fsync(written.fileno())
-        os.replace(self.pending, self.path)
+        """Completes the file. If that fails, nothing is left of it."""
+        try:
+            self._save()
+            self.targets.clear()
+            self.stage = self.layer = None
+            with open(self.pending, "rb") as written:
+                os.fsync(written.fileno())
+            os.replace(self.pending, self.path)
+        except BaseException:
+            self.discard()
+            raise
+
+    def _save(self) -> None:
+        try:
+            with quiet():
+                saved = self.layer.Save()
+        except Tf.ErrorException:
+            saved = False
+        if not saved:
+            raise OSError("the disk may be full, or the folder may be read-only; free some space and run it again")
 
     def discard(self) -> None:
         """Removes what was written."""
