@@ -1,5 +1,6 @@
 """Bakes that a farm can trust."""
 
+import json
 import os
 import random
 import signal
@@ -104,6 +105,8 @@ def BasisCurves "hair"
     (tmp_path / "root.usda").write_text("#usda 1.0\n( metersPerUnit = 1\n subLayers = [@layer.usda@] )\n")
     command = ["bake", tmp_path / "root.usda", "-o", tmp_path / "h.####.data", "--frames", "1-2"]
     assert program(*command)[0] == 0
+    inputs = json.loads((tmp_path / "h.bake.data.json").read_text())["origin"]["inputs"]
+    assert sorted(inputs) == ["layer.usda", "root.usda"]
     (tmp_path / "layer.usda").write_text(layer.replace("(0, 1, 0)", "(0, 1.1, 0)"))
     code, _, error = program(*command, "--resume")
     assert code == 2 and "layer.usda has changed" in error

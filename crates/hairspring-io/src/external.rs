@@ -147,7 +147,9 @@ fn read<T>(
     })?;
     let own = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     for file in files.map_err(wrong)?.iter().filter(|file| **file != own) {
-        load::bytes_of(file)?;
+        // By its place from the folder of `path`, which may be relative.
+        let rest = own.parent().and_then(|folder| file.strip_prefix(folder).ok());
+        load::bytes_of(&rest.map_or_else(|| file.clone(), |rest| path.with_file_name(rest)))?;
     }
     Ok(value)
 }

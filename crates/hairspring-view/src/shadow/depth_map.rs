@@ -191,11 +191,14 @@ impl DepthMap {
         let (zero, one) = (f32x8::splat(simd, 0.0), f32x8::splat(simd, 1.0));
         let places = f32x8::simd_from(simd, PLACES);
         let weights = -(places.abs() * (1.0 / RADIUS as f32)) + 1.0;
-        // Height above the surface of one row of taps, `spacing` texels apart.
+        // Height above the surface of one row of taps, `spacing` texels apart. The plane is evaluated where the
+        // height is: in the middle of a texel.
         let row = |y: f32, spacing: f32| {
-            let offset = Vec2::new(slope.x * spacing, slope.y * spacing);
-            let plane = places * offset.x + (middle.z + y * offset.y);
-            f32x8::simd_from(simd, self.taps(middle.truncate(), y, spacing)) - plane
+            let (xs, y) =
+                (PLACES.map(|x| (middle.x + x * spacing).floor()), (middle.y + y * spacing).floor());
+            let across = f32x8::simd_from(simd, xs) + (0.5 - middle.x);
+            let plane = across * slope.x + (middle.z + (y + 0.5 - middle.y) * slope.y);
+            f32x8::simd_from(simd, self.row(xs, y)) - plane
         };
         let spacing = (WIDEST * self.scale / RADIUS as f32).max(1.0);
         let (mut sum, mut count) = (zero, zero);
@@ -220,14 +223,11 @@ impl DepthMap {
         (lit * weights).reduce_sum() * (1.0 / (RADIUS * RADIUS) as f32)
     }
 
-    /// Heights at eight places of a row, `spacing` texels apart, around the texel coordinates `middle`; −∞ outside of
-    /// the map.
+    /// Heights of eight texels `xs` of row `y`; −∞ outside of the map.
     #[inline(always)]
-    fn taps(&self, middle: Vec2, y: f32, spacing: f32) -> [f32; 8] {
-        let y = middle.y + y * spacing;
-        PLACES.map(|x| {
-            let x = middle.x + x * spacing;
-            let side = self.side as f32;
+    fn row(&self, xs: [f32; 8], y: f32) -> [f32; 8] {
+        let side = self.side as f32;
+        xs.map(|x| {
             let inside = x >= 0.0 && y >= 0.0 && x < side && y < side;
             if inside { self.heights[y as usize * self.side + x as usize] } else { f32::NEG_INFINITY }
         })

@@ -205,3 +205,23 @@ fn the_shadow_of_a_farther_edge_is_softer() {
     let [near, far] = [0.02, 0.07].map(width);
     assert!(near > 0 && far > 2 * near, "the edge is {near} pixels wide if near, and {far} if far");
 }
+
+#[test]
+fn a_body_does_not_shadow_itself_at_any_resolution() {
+    let ball = crate::support::ball();
+    let bodies = [crate::support::body(&ball)];
+    for shadow_texels in [64, 128, 384, 1024] {
+        let quality = hairspring_view::Quality { shadow_texels, ..Default::default() };
+        let mut renderer = Renderer::new(SIDE, SIDE);
+        let frame = Frame { camera: camera(), quality, ..crate::support::frame(&[], &bodies) };
+        let image = renderer.draw(&frame).clone();
+        let at = |x: u32, y: u32| f32::from(image.pixel(x, y)[1]);
+        for y in 32..SIDE - 32 {
+            for x in 32..SIDE - 32 {
+                // A speckle is darker than both of its neighbors.
+                let speckle = at(x - 1, y).min(at(x + 1, y)) - at(x, y);
+                assert!(speckle < 4.0, "{shadow_texels} texels: a speckle of {speckle} at {x}, {y}");
+            }
+        }
+    }
+}

@@ -137,13 +137,15 @@ fn soft_body_light(p: vec3f) -> f32 {
     return sum / (SOFT_RADIUS * SOFT_RADIUS);
 }
 
-/// Height of a tap of the map above a plane; far below it for empty texels and outside of the map.
-fn tap_over(middle: vec2f, place: vec2f, spacing: f32, plane: f32) -> f32 {
-    let at = middle + place * spacing;
+/// Height of a tap of the map above the plane through `t` with this slope; far below it for empty texels and outside of
+/// the map. The plane is evaluated in the middle of the texel.
+fn tap_over(t: vec3f, place: vec2f, slope: vec2f) -> f32 {
+    let at = floor(t.xy + place);
     if !(all(at >= vec2f(0.0)) && all(at < vec2f(frame.map_side))) {
         return -1e9;
     }
     let depth = textureLoad(heights, vec2i(at), 0);
+    let plane = t.z + dot(at + 0.5 - t.xy, slope);
     return select(frame.map_low + depth * frame.map_range - plane, -1e9, depth <= 0.0);
 }
 
@@ -160,7 +162,7 @@ fn area_body_light(p: vec3f, n: vec3f) -> f32 {
     var count = 0.0;
     for (var y = 0.5 - SOFT_RADIUS; y < SOFT_RADIUS; y += 1.0) {
         for (var x = 0.5 - SOFT_RADIUS; x < SOFT_RADIUS; x += 1.0) {
-            let over = tap_over(t.xy, vec2f(x, y), spacing, t.z + dot(vec2f(x, y), slope * spacing));
+            let over = tap_over(t, vec2f(x, y) * spacing, slope);
             sum += max(over, 0.0);
             count += select(0.0, 1.0, over > 0.0);
         }
@@ -172,7 +174,7 @@ fn area_body_light(p: vec3f, n: vec3f) -> f32 {
     var lit = 0.0;
     for (var y = 0.5 - SOFT_RADIUS; y < SOFT_RADIUS; y += 1.0) {
         for (var x = 0.5 - SOFT_RADIUS; x < SOFT_RADIUS; x += 1.0) {
-            let over = tap_over(t.xy, vec2f(x, y), spacing, t.z + dot(vec2f(x, y), slope * spacing));
+            let over = tap_over(t, vec2f(x, y) * spacing, slope);
             let weight = (1.0 - abs(x) / SOFT_RADIUS) * (1.0 - abs(y) / SOFT_RADIUS);
             lit += weight * (1.0 - clamp(over * SLOPE, 0.0, 1.0));
         }
