@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -60,3 +62,10 @@ def identifier(name: str, taken: set[str]) -> str:
         unique, n = f"{plain}_{n}", n + 1
     taken.add(unique)
     return unique
+
+
+def publish(pending: Path, path: Path) -> None:
+    """Flushes a complete file to the disk and gives it its final name."""
+    with open(pending, "rb") as written:
+        os.fsync(written.fileno())
+    os.replace(pending, path)

@@ -162,7 +162,7 @@ class Children:
         return 130 if self.ended and child.returncode else child.returncode, output, errors
 
     def end(self) -> None:
-        """Stops all programs, which remove their unfinished files, and starts no more. A second call stops them at once."""
+        """Stops all programs, which remove their unfinished files, and starts no more. A second call stops them immediately."""
         with self.lock:
             self.ended = True
             for child in self.running:

@@ -1,8 +1,8 @@
 //! Ctrl-C, SIGTERM and SIGHUP end a run with [`CODE`]. No partial file is left, neither under its final name
 //! nor under a temporary one.
 //!
-//! At first a signal ends the program immediately. A command that keeps what is finished calls [`finish_current`];
-//! from there on the first signal ends it after the current frame, and the second one immediately.
+//! By default a signal ends the program immediately. A command that keeps its finished frames calls [`finish_current`].
+//! After that call the first signal ends it after the current frame, and the second one ends it immediately.
 
 use crate::console;
 use std::sync::{

@@ -33,7 +33,7 @@ pub trait ExternalFormats: Send + Sync {
     /// Reads all curves of a file as one groom.
     ///
     /// # Errors
-    /// What is wrong, and what to do.
+    /// Returns a sentence with the cause and the remedy.
     fn read_groom(
         &self,
         path: &Path,
@@ -43,7 +43,7 @@ pub trait ExternalFormats: Send + Sync {
     /// Reads the meshes of a file as one body.
     ///
     /// # Errors
-    /// What is wrong, and what to do.
+    /// Returns a sentence with the cause and the remedy.
     fn read_body(
         &self,
         path: &Path,
@@ -53,13 +53,13 @@ pub trait ExternalFormats: Send + Sync {
     /// Returns the other files that `path` consists of, such as the layers of a USD stage.
     ///
     /// # Errors
-    /// What is wrong, and what to do.
+    /// Returns a sentence with the cause and the remedy.
     fn used_files(&self, path: &Path) -> std::result::Result<Vec<PathBuf>, String>;
 
     /// Begins to write strands that move to one file.
     ///
     /// # Errors
-    /// What is wrong, and what to do.
+    /// Returns a sentence with the cause and the remedy.
     fn write_cache(
         &self,
         path: &Path,
@@ -95,7 +95,7 @@ pub trait CacheWriter {
     /// Writes the points of all grooms at `frame`, one groom after the other [m], and their velocities [m/s].
     ///
     /// # Errors
-    /// What is wrong, and what to do.
+    /// Returns a sentence with the cause and the remedy.
     fn frame(
         &mut self,
         frame: f64,
@@ -106,7 +106,7 @@ pub trait CacheWriter {
     /// Completes the file.
     ///
     /// # Errors
-    /// What is wrong, and what to do.
+    /// Returns a sentence with the cause and the remedy.
     fn finish(self: Box<Self>) -> std::result::Result<(), String>;
 }
 

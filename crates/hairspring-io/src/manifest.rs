@@ -1,7 +1,7 @@
-//! The manifest of a sequence of files: what it was made from, and the checksum of each finished file.
+//! The manifest of a sequence of files lists its inputs and options, and the checksum of each finished file.
 //!
-//! It is a JSON file beside the sequence. A run that resumes another compares its own origin with it, and checks each
-//! finished file against it.
+//! It is a JSON file in the folder of the sequence. A resumed run compares its own inputs and options with the manifest,
+//! and verifies the checksum of each finished file.
 
 use crate::observe_files;
 use serde::{Deserialize, Serialize};

@@ -12,7 +12,7 @@ import imath
 import numpy as np
 from alembic3d import Abc, AbcCoreAbstract, AbcGeom
 
-from ..description import Description, MovingGroom, identifier
+from ..description import Description, MovingGroom, identifier, publish
 
 VERSION = (1, 5)
 """Version of Unreal's groom schema."""
@@ -176,9 +176,7 @@ class CurvesWriter:
         try:
             self._require(0)
             self._close()
-            with open(self.pending, "rb") as written:
-                os.fsync(written.fileno())
-            os.replace(self.pending, self.path)
+            publish(self.pending, self.path)
         except BaseException:
             self.discard()
             raise

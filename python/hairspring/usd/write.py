@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, Vt
 
-from ..description import Description, MovingGroom, identifier
+from ..description import Description, MovingGroom, identifier, publish
 from . import material
 from .read import open_stage, quiet, space, world
 
@@ -196,9 +196,7 @@ class CurvesWriter:
             self._save()
             self.targets.clear()
             self.stage = self.layer = None
-            with open(self.pending, "rb") as written:
-                os.fsync(written.fileno())
-            os.replace(self.pending, self.path)
+            publish(self.pending, self.path)
         except BaseException:
             self.discard()
             raise

@@ -82,11 +82,13 @@ pub fn text_in_folder(text: &str, [from, to]: [&Path; 2]) -> Result<String, AppE
     Ok(edited.to_string())
 }
 
-/// Renames every file that a scene names: the values of `file`, `rig`, `weights`, `bones` and
-/// `vertex_cache`.
+/// The keys of a scene file whose text is the name of a file.
+const FILE_KEYS: [&str; 7] = ["file", "rig", "weights", "bones", "vertex_cache", "texture", "values"];
+
+/// Renames every file that a scene names: the texts of [`FILE_KEYS`].
 fn rename_files(table: &mut dyn toml_edit::TableLike, rename: &dyn Fn(&str) -> PathBuf) {
     for (key, item) in table.iter_mut() {
-        let names_file = ["file", "rig", "weights", "bones", "vertex_cache"].contains(&key.get());
+        let names_file = FILE_KEYS.contains(&key.get());
         match item {
             Item::Value(Value::String(name)) if names_file => {
                 let new = rename(name.value()).to_string_lossy().into_owned();
@@ -131,6 +133,16 @@ mod tests {
         assert!(document.text().contains(&groom), "{}", document.text());
         document.save(&from.join("scene.toml")).unwrap();
         assert_eq!(document.text(), SCENE, "back where it was");
+    }
+
+    #[test]
+    fn every_file_that_a_scene_names_is_renamed() {
+        let scene = "[body]\nfile = \"a\"\nrig = \"a\"\nweights = \"a\"\nvertex_cache = \"a\"\n[builtin]\n\
+                     maps = { density = { texture = \"a\" } }\n[[groom]]\nfile = \"a\"\nbones = \"a\"\n[groom.maps]\n\
+                     length = { texture = \"a\" }\nbend = { values = \"a\" }\ndrag = { values = [1, 2] }\n[[collider]]\n\
+                     shape.hull = { file = \"a\" }\n[clip]\nfile = \"a\"\n";
+        let renamed = text_in_folder(scene, [Path::new("/from"), Path::new("/to")]).unwrap();
+        assert_eq!(renamed, scene.replace("\"a\"", "\"/from/a\""));
     }
 
     #[cfg(unix)]

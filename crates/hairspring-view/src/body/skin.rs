@@ -27,8 +27,8 @@ pub(crate) const REFLECTANCE: f32 = 0.028;
 pub(crate) const LOBES: (f32, f32) = (0.75, 0.6);
 /// Strength of the sheen at grazing angles.
 pub(crate) const SHEEN: f32 = 0.25;
-/// Roughness above which a surface reflects less and less of the lamps like a mirror [1]. At 1 it is matte, as are wool
-/// and the skin between hairs: what is rough enough hides its own highlight.
+/// Roughness above which the specular reflection decreases linearly, to 0 at roughness 1 [1]. Wool and the scalp between
+/// hairs are matte: their own fibers shadow the highlight.
 pub(crate) const MATTE: f32 = 0.85;
 
 /// Light leaving triangle `t` of `body` toward the camera, at the pixel position `at`.

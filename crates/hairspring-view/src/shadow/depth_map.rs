@@ -165,15 +165,16 @@ impl DepthMap {
     }
 
     /// Fraction of the key lamp's light that reaches a point `p` of a body with the unit normal `n`, 0 to 1:
-    /// percentage-closer soft shadows (Fernando 2005). The edge of a shadow is as wide as a lamp of the size [`LAMP`]
-    /// makes it: the shadow of a chin on the chest is softer than that of a nose on the cheek.
+    /// percentage-closer soft shadows (Fernando 2005). The width of the penumbra grows with the distance of the occluder,
+    /// so the shadow of a chin on the chest is softer than that of a nose on the cheek.
     ///
     /// ```text
-    ///   lamp ═══         r = LAMP · d      d  mean height of what is above the surface in the neighborhood [m]
-    ///         \ /        r                 r  radius of the filter [m]
-    ///   ───────X  d
-    ///         / \
-    ///   ─────╱───╲─────  p
+    ///      lamp  ═══
+    ///            \ /         r = LAMP · d      d  mean height of the occluders above the surface [m]
+    ///   occluder  X   ┐                        r  radius of the filter [m]
+    ///            / \  │ d
+    ///   ────────╱─p─╲─┘
+    ///             ├─┤ r
     /// ```
     pub fn area_light(&self, level: Level, p: Vec3, n: Vec3, bias: f32) -> f32 {
         dispatch!(level, simd => self.area_light_in_lanes(simd, p, n, bias))
