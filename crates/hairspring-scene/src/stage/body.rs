@@ -363,18 +363,24 @@ impl StagedBody {
         &self.initial_pushes
     }
 
+    /// Returns whether collider `k` pushes hair out before the scene begins.
+    fn pushes(&self, k: usize) -> bool {
+        self.initial_pushes.iter().any(|push| push.collider == k)
+    }
+
     /// Returns the current poses of the colliders in which hair may stay as deep as it is authored.
     pub(super) fn keeping_poses(&self) -> Vec<ColliderPose> {
-        let pushes = |k: usize| self.initial_pushes.iter().any(|push| push.collider == k);
-        let keeping = self.colliders.iter().enumerate().filter(|(k, _)| !pushes(*k));
+        let keeping = self.colliders.iter().enumerate().filter(|(k, _)| !self.pushes(*k));
         keeping.map(|(_, collider)| collider.end_pose()).collect()
     }
 
-    /// Returns the colliders of the scene's sheets and those listed in the scene, without the body's meshes.
-    pub(super) fn sheets_and_colliders(&self) -> Vec<MovingCollider> {
-        let meshes = self.colliders[..self.meshes].iter();
-        let sheets = meshes.filter(|collider| matches!(collider.shape, ColliderShape::Sheet(_)));
-        sheets.chain(self.scene_colliders()).cloned().collect()
+    /// Returns the colliders of the scene's sheets and those listed in the scene, without the body's meshes: those that
+    /// push hair out before the scene begins, or the others.
+    pub(super) fn sheets_and_colliders(&self, pushing: bool) -> Vec<MovingCollider> {
+        let sheet = |collider: &MovingCollider| matches!(collider.shape, ColliderShape::Sheet(_));
+        let all = self.colliders[..self.carriers.len()].iter().enumerate();
+        let own = all.filter(|(k, collider)| *k >= self.meshes || sheet(collider));
+        own.filter(|(k, _)| self.pushes(*k) == pushing).map(|(_, collider)| collider.clone()).collect()
     }
 
     /// Returns the current poses of the colliders.

@@ -17,13 +17,15 @@ pub struct StartsInside {
     pub through_sheets: usize,
     /// Number of simulated strands of the scene.
     pub all: usize,
-    /// Whether a collider or a sheet of the scene is among these colliders, and not only a mesh of the body.
-    pub in_colliders: bool,
+    /// Whether a collider or a sheet of the scene that could push hair out and does not is among these colliders.
+    pub in_keeping: bool,
+    /// Whether one that pushes hair out is among them: it did not get all of it out.
+    pub in_pushing: bool,
 }
 
 impl fmt::Display for StartsInside {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { strands, depth, through_sheets, all, in_colliders } = *self;
+        let Self { strands, depth, through_sheets, all, in_keeping, in_pushing } = *self;
         let inside = format!("{strands} start inside a collider, up to {:.1} mm deep", 1e3 * depth);
         let through = format!("{through_sheets} pass through a sheet");
         let what = match (strands, through_sheets) {
@@ -32,10 +34,17 @@ impl fmt::Display for StartsInside {
             _ => format!("{inside}, and {through}"),
         };
         write!(f, "of {all} simulated strands, {what}; they may stay so")?;
-        if in_colliders {
+        if in_keeping {
             write!(
                 f,
                 "; to push hair out before the scene begins, add `initial = \"push\"` to the [[collider]] or [[sheet]]"
+            )?;
+        }
+        if in_pushing {
+            write!(
+                f,
+                "; a [[collider]] or [[sheet]] with `initial = \"push\"` could not push all hair out: make it larger, \
+                 or let the hair lie flat or end outside of it"
             )?;
         }
         Ok(())
@@ -47,18 +56,41 @@ impl Stage {
     /// first step.
     pub fn starts_inside(&self) -> Option<StartsInside> {
         let measure = self.measure();
-        let own = self.body.sheets_and_colliders();
-        let poses: Vec<ColliderPose> = own.iter().map(MovingCollider::end_pose).collect();
-        let strands = self.hair.iter().flat_map(StagedHair::simulated_points);
-        let through = |points: &&[glam::Vec3]| poses.iter().any(|pose| passes_through_shell(pose, points));
-        let through_sheets = strands.filter(through).count();
-        let in_colliders = through_sheets > 0 || self.simulation.measure(&own).started_inside_strands > 0;
+        let through = |colliders: &[MovingCollider]| {
+            let poses: Vec<ColliderPose> = colliders.iter().map(MovingCollider::end_pose).collect();
+            let strands = self.hair.iter().flat_map(StagedHair::simulated_points);
+            strands.filter(|points| poses.iter().any(|pose| passes_through_shell(pose, points))).count()
+        };
+        let [keeping, pushing] = [false, true].map(|pushing| self.body.sheets_and_colliders(pushing));
+        let through_sheets = through(&[&keeping[..], &pushing].concat());
+        let is_in = |colliders: &[MovingCollider]| {
+            through(colliders) > 0 || self.simulation.measure(colliders).started_inside_strands > 0
+        };
         (measure.started_inside_strands > 0 || through_sheets > 0).then_some(StartsInside {
             strands: measure.started_inside_strands,
             depth: measure.started_inside_depth as f32,
             through_sheets,
             all: self.simulation.strand_count(),
-            in_colliders,
+            in_keeping: is_in(&keeping),
+            in_pushing: is_in(&pushing),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_report_advises_only_what_the_scene_does_not_do_yet() {
+        let report = |in_keeping, in_pushing| {
+            let (strands, through_sheets) = (12, 3);
+            StartsInside { strands, depth: 0.004, through_sheets, all: 40, in_keeping, in_pushing }
+                .to_string()
+        };
+        let (advice, limit) = ("add `initial = \"push\"`", "could not push all hair out");
+        assert!(report(true, false).contains(advice) && !report(true, false).contains(limit));
+        assert!(report(false, true).contains(limit) && !report(false, true).contains(advice));
+        assert!(!report(false, false).contains("push"), "the body's own meshes do not push");
     }
 }

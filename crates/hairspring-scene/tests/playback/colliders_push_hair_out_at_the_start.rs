@@ -100,7 +100,10 @@ fn hair_that_may_stay_inside_is_counted_and_reported_as_inside() {
         play(&mut stage, 2);
         let measure = stage.measure();
         println!("{name}: {report}");
-        assert!(report.in_colliders && report.strands > 20 && report.all == 100, "{name}: {report:?}");
+        assert!(
+            report.in_keeping && !report.in_pushing && report.strands > 20 && report.all == 100,
+            "{name}: {report:?}"
+        );
         assert!(
             report.to_string().contains("initial = \"push\""),
             "{name}: the report has no remedy: {report}"

@@ -73,6 +73,23 @@ pub const CORRECTIONS: usize = 24;
 /// about the precision of world coordinates in a room.
 const SLACK: f32 = 1e-5;
 
+/// The same as [`post_solve`], for the kernels that are not made for speed: they share its code, which keeps the build
+/// short.
+#[inline(never)]
+pub fn post_solve_shared<S: Simd>(
+    simd: S,
+    stride: usize,
+    finish: &PostSolveParams,
+    step: &SubstepContext<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) {
+    simd.vectorize(
+        #[inline(always)]
+        || post_solve(simd, stride, finish, step, tile, scratch),
+    );
+}
+
 /// Applies strain limit and contact to every `stride`th particle of the new `scratch.edges`, and writes the
 /// state.
 #[inline(always)]

@@ -21,6 +21,8 @@ use crate::{
 pub struct Implicit;
 
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B, N> for Implicit {
+    const PRODUCTION: bool = true;
+
     #[inline(always)]
     fn advance(
         simd: S,
@@ -86,6 +88,42 @@ where
     if frame.iterations == 1 {
         return projection;
     }
+    refine::<S, M, B, N>(simd, frame, step, tile, scratch)
+}
+
+/// Newton's iterations after the first solve.
+///
+/// Not inlined, so that the kernel of the default quality stays small.
+#[inline(never)]
+fn refine<S, M, const B: usize, const N: usize>(
+    simd: S,
+    frame: &FrameContext,
+    step: &SubstepContext<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) -> Projection<S>
+where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    simd.vectorize(
+        #[inline(always)]
+        || iterate::<S, M, B, N>(simd, frame, step, tile, scratch),
+    )
+}
+
+#[inline(always)]
+fn iterate<S, M, const B: usize, const N: usize>(
+    simd: S,
+    frame: &FrameContext,
+    step: &SubstepContext<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+) -> Projection<S>
+where
+    S: Simd,
+    M: Model<S, B, N>,
+{
     // Newton: linearize again at the last iterate. A correction larger than the previous one shows that the
     // step was too long, so the next one is halved (the natural monotonicity test of Deuflhard 2004, *Newton
     // Methods*, §3.3).

@@ -23,7 +23,7 @@ use super::{
     drag::Drag,
     frame_context::FrameContext,
     model::{Model, Stretching},
-    post_solve::{PostSolveParams, post_solve},
+    post_solve::{PostSolveParams, post_solve, post_solve_shared},
     precomputed::precompute,
     root::Root,
     scratch::{Memory, Scratch},
@@ -36,6 +36,9 @@ use crate::{collide::ColliderPose, settings::Integrator};
 pub trait Method<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> {
     /// Stiffness of the segments' springs.
     const STRETCHING: Stretching = Stretching::Moderate;
+
+    /// Whether the method is made for speed. Otherwise its kernels share code.
+    const PRODUCTION: bool = false;
 
     /// Prepares the substeps of a frame.
     #[inline(always)]
@@ -106,7 +109,11 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
             colliders: &substep.colliders,
         };
         let finish = I::advance(simd, frame, &step, tile, scratch);
-        post_solve(simd, M::STRIDE, &finish, &step, tile, scratch);
+        if I::PRODUCTION {
+            post_solve(simd, M::STRIDE, &finish, &step, tile, scratch);
+        } else {
+            post_solve_shared(simd, M::STRIDE, &finish, &step, tile, scratch);
+        }
         continues = true;
     }
 }
