@@ -11,7 +11,7 @@
 //! The first point of a strand may give attributes of the whole strand: `group`, `guide` (0 or 1), `u` and `v` of the root,
 //! `density` (the share of the strands around it that is kept), and the factors `stiffness`, `damping`, `drag`, `friction`
 //! and `charge` of the material. Other columns are ignored with a note. Columns are separated by commas, semicolons or
-//! tabs. The points of a strand are consecutive, root first.
+//! tabs; a cell in quotation marks may contain them. The points of a strand are consecutive, root first.
 
 use crate::{
     Place, Problem, color,
@@ -57,18 +57,26 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     if !text.contains('\n') {
         text = text.replace('\r', "\n").into();
     }
-    let mut lines =
-        text.lines().enumerate().map(|(k, line)| (k + 1, line.trim())).filter(|(_, line)| !line.is_empty());
-    let (_, header) = lines.next().ok_or_else(|| Problem::whole("the table is empty"))?;
-    let separator = [',', ';', '\t'].into_iter().find(|s| header.contains(*s)).unwrap_or(',');
+    let header = text.lines().find(|line| !line.trim().is_empty());
+    let header = header.ok_or_else(|| Problem::whole("the table is empty"))?;
+    let separator = [b',', b';', b'\t'].into_iter().find(|s| header.as_bytes().contains(s)).unwrap_or(b',');
+    let mut table = ::csv::ReaderBuilder::new();
+    table.delimiter(separator).has_headers(false).flexible(true);
+    let mut rows = table.from_reader(text.as_bytes()).into_records();
     let mut notes = Vec::new();
-    let columns = columns(header, separator, &mut notes)?;
+    let first = rows.next().ok_or_else(|| Problem::whole("the table is empty"))?;
+    let columns = columns(&cells(&first.map_err(|error| Problem::whole(error.to_string()))?), &mut notes)?;
     let mut groom = Groom { offsets: vec![0], ..Groom::default() };
     let (mut radii, mut last, mut attributes) = (Vec::new(), None, StrandAttributes::default());
     let mut begun = HashSet::new();
-    for (number, line) in lines {
+    for row in rows {
+        let row = row.map_err(|error| Problem::whole(error.to_string()))?;
+        let number = row.position().map_or(0, |place| place.line() as usize);
         let wrong = |text: String| Problem::new(Place::Line(number), text);
-        let cells: Vec<&str> = line.split(separator).map(unquoted).collect();
+        let cells = cells(&row);
+        if cells == [""] {
+            continue;
+        }
         if cells.len() != columns.count {
             let text =
                 format!("the line has {} columns, and the first line names {}", cells.len(), columns.count);
@@ -82,11 +90,11 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         };
         let vector = |k: [usize; 3]| Ok::<_, Problem>(Vec3::new(cell(k[0])?, cell(k[1])?, cell(k[2])?));
         let strand = cells[columns.strand];
-        if last.is_some_and(|last| last != strand) {
+        if last.as_deref().is_some_and(|last| last != strand) {
             groom.offsets.push(groom.points.len() as u32);
         }
-        if last != Some(strand) {
-            if !begun.insert(strand) {
+        if last.as_deref() != Some(strand) {
+            if !begun.insert(strand.to_owned()) {
                 return Err(wrong(format!(
                     "strand {} begins again; keep the lines of a strand together",
                     name(strand)
@@ -107,7 +115,9 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
             }
             attributes.groups.extend(columns.group.map(|k| name(cells[k])));
         }
-        last = Some(strand);
+        if last.as_deref() != Some(strand) {
+            last = Some(strand.to_owned());
+        }
         groom.points.push(vector(columns.position)?);
         if let Some((k, factor)) = columns.radius {
             radii.push(factor * cell(k)?);
@@ -126,15 +136,14 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     Ok(read)
 }
 
-/// A cell without spaces and quotation marks around it.
-fn unquoted(cell: &str) -> &str {
-    let cell = cell.trim();
-    cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).unwrap_or(cell)
+/// The cells of a row, without spaces around them, and without quotation marks that follow a space.
+fn cells(row: &::csv::StringRecord) -> Vec<&str> {
+    let bare = |cell: &'_ str| cell.strip_prefix('"').and_then(|cell| cell.strip_suffix('"')).is_some();
+    row.iter().map(str::trim).map(|cell| if bare(cell) { &cell[1..cell.len() - 1] } else { cell }).collect()
 }
 
-fn columns(header: &str, separator: char, notes: &mut Vec<String>) -> Result<Columns, Problem> {
-    let names: Vec<String> =
-        header.split(separator).map(|name| unquoted(name).to_ascii_lowercase()).collect();
+fn columns(header: &[&str], notes: &mut Vec<String>) -> Result<Columns, Problem> {
+    let names: Vec<String> = header.iter().map(|name| name.to_ascii_lowercase()).collect();
     let find = |wanted: &[&str]| names.iter().position(|name| wanted.contains(&name.as_str()));
     let required = |wanted: &[&str]| {
         find(wanted).ok_or_else(|| {
@@ -188,6 +197,13 @@ mod tests {
         let quoted = super::read(table.as_bytes()).unwrap();
         assert_eq!(quoted.groom.points, [Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0)]);
         assert_eq!(quoted.notes, ["ignored columns: u"]);
+        // Nor do separators inside of quotation marks, or empty lines.
+        let table = "strand,x,y,z,group\n\n\"a,b\",1,2,3,\"left, \"\"long\"\"\"\n   \n\"a,b\",4,5,6,\n";
+        let quoted = super::read(table.as_bytes()).unwrap();
+        assert_eq!((quoted.groom.strand_count(), quoted.groom.points.len()), (1, 2));
+        assert_eq!(quoted.groom.group_names, ["left, \"long\""]);
+        let open = super::read(b"strand,x,y,z\n\"a,1,2,3\na,4,5,6\n").err().unwrap().to_string();
+        assert!(open.contains("line 2: the line has 1 columns"), "{open}");
         let error = parse(["0", "1", "0"]).err().unwrap().to_string();
         assert!(error.contains("line 4: strand 0 begins again"), "{error}");
     }

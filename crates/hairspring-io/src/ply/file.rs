@@ -90,6 +90,29 @@ pub(super) struct Payload<'a> {
     size: usize,
 }
 
+/// Returns the file with all numbers of its rows as the parser accepts them: with digits on both sides of the point,
+/// as in `1.0` for `1.` and `0.5` for `.5`. Binary files are not changed.
+pub(super) fn with_digits<'a>(opened: &Opened, data: &'a [u8]) -> Cow<'a, [u8]> {
+    let (head, rows) = data.split_at(opened.rows);
+    let digit = |k: Option<usize>| k.and_then(|k| rows.get(k)).is_some_and(u8::is_ascii_digit);
+    // Whether a digit is missing before and after the point at `k`. A point without any digit is no number.
+    let missing = |k: usize| {
+        let [before, after] = [digit(k.checked_sub(1)), digit(Some(k + 1))];
+        (rows[k] == b'.' && before != after).then_some([!before, !after])
+    };
+    if opened.header.encoding != Encoding::Ascii || !(0..rows.len()).any(|k| missing(k).is_some()) {
+        return data.into();
+    }
+    let mut all = head.to_vec();
+    for (k, byte) in rows.iter().enumerate() {
+        let [before, after] = missing(k).unwrap_or_default();
+        all.extend(before.then_some(b'0'));
+        all.push(*byte);
+        all.extend(after.then_some(b'0'));
+    }
+    all.into()
+}
+
 impl<'a> Payload<'a> {
     pub(super) fn new(opened: &'a Opened, data: &'a [u8]) -> Self {
         Self { opened, reader: Reader::new(&data[opened.rows..]), size: data.len() }

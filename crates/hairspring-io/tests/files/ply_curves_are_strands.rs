@@ -54,6 +54,21 @@ fn lists_and_numbers_of_points_name_strands() {
 }
 
 #[test]
+fn numbers_may_end_or_begin_with_their_point() {
+    let file = |points: &str| {
+        format!(
+            "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n\
+             property int strand\nend_header\n{points}"
+        )
+    };
+    let groom = ply::parse(file("1. -.5 2.e-1 0\n-3. .25 0.5 0\n").as_bytes()).unwrap();
+    assert_eq!(groom.points, [Vec3::new(1.0, -0.5, 0.2), Vec3::new(-3.0, 0.25, 0.5)]);
+    for wrong in [". 0 0 0\n0 1 0 0\n", "1..5 0 0 0\n0 1 0 0\n"] {
+        assert!(error(&file(wrong)).contains("line 9"), "{wrong:?} is read");
+    }
+}
+
+#[test]
 fn a_file_is_read_with_notes_about_skipped_data() {
     let folder = tempfile::tempdir().unwrap();
     let options = ReadOptions { scale: Some(1.0), up: None };
