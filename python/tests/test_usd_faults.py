@@ -68,6 +68,21 @@ def test_guides_of_three_numbers_in_a_flat_primvar_are_read(tmp_path):
     assert (got.guides == [1, 2, 3]).all() and np.allclose(got.guide_weights, [0.5, 0.25, 0.25])
 
 
+def test_hidden_prims_guides_and_proxies_are_named(tmp_path):
+    stage, curves = a_groom_stage(tmp_path / "a.usda")
+    points, offsets = tuft()
+    for name in ("hidden", "guides"):
+        define_curves(stage, f"/{name}", points, offsets)
+    UsdGeom.Imageable.Get(stage, "/hidden").MakeInvisible()
+    UsdGeom.Imageable.Get(stage, "/guides").CreatePurposeAttr("guide")
+    got = read(stage)
+    assert len(got.offsets) == len(offsets)
+    assert got.notes == ["BasisCurves prims that are hidden, guides or proxies are left out (/hidden, /guides)"]
+    UsdGeom.Imageable.Get(stage, "/hair").MakeInvisible()
+    with pytest.raises(FormatError, match="no visible BasisCurves .*(/hair, /hidden, /guides)"):
+        read(stage)
+
+
 def test_other_curves_and_instancers_are_named(tmp_path):
     stage, _ = a_groom_stage(tmp_path / "a.usda")
     UsdGeom.NurbsCurves.Define(stage, "/nurbs")

@@ -11,7 +11,10 @@
 All content is in meters, Y up; the unit and the axis of a stage are converted.
 """
 
-from .read import read_cameras, read_curves, read_mesh, used_files
+from .cameras import read_cameras
+from .curves import read_curves
+from .mesh import read_mesh
+from .stage import used_files
 from .write import CurvesWriter
 
 __all__ = ["CurvesWriter", "read_cameras", "read_curves", "read_mesh", "used_files"]

@@ -10,7 +10,7 @@ from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, Vt
 
 from ..description import Description, MovingGroom, identifier, publish
 from . import material
-from .read import open_stage, quiet, space, world
+from .stage import open_stage, quiet, space, world
 
 DEFORMABLE = "PhysicsCurvesDeformableSimAPI"
 """The applied schema of curves that a simulation deforms (AOUSD proposal "Deformable Body Physics", curves)."""
