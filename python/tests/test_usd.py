@@ -232,6 +232,33 @@ def test_instances_are_read(tmp_path):
     np.testing.assert_allclose(groom.points[120:] - groom.points[:120], np.tile([0.1, 0, 0], (120, 1)), atol=1e-6)
 
 
+def test_instances_of_an_instancer_are_read(tmp_path):
+    points, offsets = tuft()
+    stage = new_stage(tmp_path / "a.usda")
+    instancer = UsdGeom.PointInstancer.Define(stage, "/scatter")
+    instancer.AddTranslateOp().Set(Gf.Vec3d(0, 0, 5))
+    stage.CreateClassPrim("/_kinds")
+    curves = define_curves(stage, "/_kinds/long/hair", points, offsets, widths=[2e-4], interpolation="constant")
+    UsdGeom.Xformable(curves).AddTranslateOp().Set(Gf.Vec3d(0.01, 0, 0))
+    define_curves(stage, "/scatter/short", 0.5 * points, offsets)
+    instancer.CreatePrototypesRel().SetTargets(["/_kinds/long", "/scatter/short"])
+    instancer.CreateProtoIndicesAttr([0, 1, 0, 0])
+    instancer.CreatePositionsAttr([(0, 0, 0), (1, 0, 0), (2, 0, 0), (3, 0, 0)])
+    # The third is turned by 90 degrees about Y, and twice as large.
+    instancer.CreateOrientationsAttr([Gf.Quath(1)] * 2 + [Gf.Quath(0.5**0.5, 0, 0.5**0.5, 0)] + [Gf.Quath(1)])
+    instancer.CreateScalesAttr([(1, 1, 1)] * 2 + [(2, 2, 2)] + [(1, 1, 1)])
+    instancer.CreateIdsAttr([10, 11, 12, 13])
+    instancer.InvisId(13, Usd.TimeCode.Default())
+    stage.Save()
+    groom = hs.Groom.read(tmp_path / "a.usda")
+    x, y, z = points.T
+    first = np.stack([x + 0.01, y, z + 5], axis=1)
+    third = np.stack([2 * z + 2, 2 * y, 5 - 2 * (x + 0.01)], axis=1)
+    short = 0.5 * points + [1, 0, 5]
+    np.testing.assert_allclose(groom.points, np.concatenate([first, third, short]), atol=2e-3)
+    np.testing.assert_allclose(groom.radii[:240], np.repeat([1e-4, 2e-4], 120), rtol=1e-2)
+
+
 def test_what_is_left_out_is_said(tmp_path):
     points, offsets = tuft()
     stage = new_stage(tmp_path / "a.usda")

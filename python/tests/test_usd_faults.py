@@ -83,21 +83,54 @@ def test_hidden_prims_guides_and_proxies_are_named(tmp_path):
         read(stage)
 
 
-def test_other_curves_and_instancers_are_named(tmp_path):
+def an_instancer(stage, path, prototypes, positions, indices):
+    instancer = UsdGeom.PointInstancer.Define(stage, path)
+    instancer.CreatePrototypesRel().SetTargets(prototypes)
+    instancer.CreateProtoIndicesAttr(indices)
+    instancer.CreatePositionsAttr(positions)
+    return instancer
+
+
+def test_other_curves_are_named(tmp_path):
     stage, _ = a_groom_stage(tmp_path / "a.usda")
     UsdGeom.NurbsCurves.Define(stage, "/nurbs")
     UsdGeom.HermiteCurves.Define(stage, "/hermite")
-    instancer = UsdGeom.PointInstancer.Define(stage, "/many")
-    points, offsets = tuft()
-    define_curves(stage, "/many/tuft", points, offsets)
-    instancer.CreatePrototypesRel().AddTarget("/many/tuft")
-    instancer.CreateProtoIndicesAttr([0, 0, 0])
-    instancer.CreatePositionsAttr([(0, 0, 0), (1, 0, 0), (2, 0, 0)])
     notes = " ".join(read(stage).notes)
-    for part in ("NurbsCurves prims are left out (/nurbs)", "HermiteCurves prims are left out (/hermite)", "/many is a PointInstancer"):
+    for part in ("NurbsCurves prims are left out (/nurbs)", "HermiteCurves prims are left out (/hermite)"):
         assert part in notes
     with pytest.raises(FormatError, match="no visible meshes$"):
         usd.read_mesh(tmp_path / "a.usda")
+
+
+def test_instancers_that_cannot_be_read_are_named(tmp_path):
+    points, offsets = tuft()
+    stage, _ = a_groom_stage(tmp_path / "a.usda")
+    for name in ("short", "wrong", "outer"):
+        define_curves(stage, f"/{name}/tuft", points, offsets)
+    an_instancer(stage, "/short", ["/short/tuft"], [(0, 0, 0)], [0, 0])
+    an_instancer(stage, "/wrong", ["/wrong/tuft"], [(0, 0, 0)], [7])
+    an_instancer(stage, "/gone", ["/nowhere"], [(0, 0, 0)], [0])
+    define_curves(stage, "/outer/inner/tuft", points, offsets)
+    an_instancer(stage, "/outer/inner", ["/outer/inner/tuft"], [(0, 0, 0)], [0])
+    an_instancer(stage, "/outer", ["/outer/tuft"], [(0, 0, 0), (1, 0, 0)], [0, 0])
+    got = read(stage)
+    # The plain curves, and the two instances of /outer/tuft.
+    assert len(got.offsets) - 1 == 3 * 12
+    assert sorted(got.notes) == [
+        "/outer/inner is a PointInstancer in a prototype of another; left out, so place its instances directly",
+        "the arrays of /short do not have one valid value for each instance; left out",
+        "the arrays of /wrong do not have one valid value for each instance; left out",
+    ]
+
+
+def test_instanced_meshes_are_named(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    a_mesh(stage, CORNERS, *FACES)
+    [mesh] = [prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh)]
+    an_instancer(stage, "/many", [mesh.GetPath()], [(0, 0, 0), (1, 0, 0)], [0, 0])
+    stage.Save()
+    [note] = usd.read_mesh(tmp_path / "a.usda").notes
+    assert "/many is a PointInstancer: its 2 instances are left out" in note
 
 
 def test_surfaces_that_are_not_meshes_are_named(tmp_path):

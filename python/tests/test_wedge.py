@@ -4,6 +4,7 @@ import csv
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -266,6 +267,17 @@ def test_an_interrupted_wedge_stops_its_programs_on_ray(tmp_path):
     _, error = wedge.communicate(timeout=60)
     assert wedge.returncode == 130 and "interrupted; 0 of 2 variants are done" in error, error
     assert not pending(out) and not programs_in(out) and (out / "table.csv").exists()
+
+
+def test_a_cluster_that_does_not_answer_is_an_error(tmp_path, program):
+    pytest.importorskip("ray")
+    with socket.socket() as unused:
+        unused.bind(("127.0.0.1", 0))
+        port = unused.getsockname()[1]
+        for address in (f"127.0.0.1:{port}", f"ray://127.0.0.1:{port}", "127.0.0.1:99999"):
+            code, _, error = program("wedge", shot(tmp_path), "-o", tmp_path / "w", "--ray", address)
+            assert code == 7 and error.startswith(f"hairspring wedge: --ray {address}: nothing answers there ("), error
+            assert error.count("\n") == 1
 
 
 def test_a_cluster_that_cannot_be_used_is_one_sentence(tmp_path, program, monkeypatch):

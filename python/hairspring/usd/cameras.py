@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Usd, UsdGeom
 
-from .stage import open_stage, prims, space, world
+from .stage import open_stage, prims, space, world_of
 
 
 def read_cameras(path: Path, scale: float | None = None, up: str | None = None) -> dict[str, list[dict]]:
@@ -23,7 +23,7 @@ def read_cameras(path: Path, scale: float | None = None, up: str | None = None) 
         samples = []
         for t in times:
             time = Usd.TimeCode.Default() if t is None else Usd.TimeCode(t)
-            linear, shift = world(prim, time, to)
+            linear, shift = world_of(prim, time, to)
             lens: Gf.Camera = UsdGeom.Camera(prim).GetCamera(time)
             look = -linear[2] / np.linalg.norm(linear[2])
             fov = lens.GetFieldOfView(Gf.Camera.FOVVertical)

@@ -8,13 +8,14 @@ import numpy as np
 from pxr import Usd, UsdGeom
 
 from . import material
-from ..formats import FACTORS, AbsentError, Curves, FormatError, as_lengths_and_points, guides_from_flags
+from ..formats import FACTORS, MAX_POSITIONS, AbsentError, Curves, FormatError, as_lengths_and_points, guides_from_flags
 from ..shapes import DEFAULT_RADIUS, check_counts, expand, fitted, of_strands, on_curve, varying_count
-from .stage import because, faults, first_time, left_out, open_stage, primvar, prims, space, unused_primvars, world
+from .instances import placed
+from .stage import because, faults, first_time, left_out, open_stage, primvar, space, unused_primvars, world_of
 
 
 def read_curves(path: Path, scale: float | None = None, up: str | None = None) -> Curves:
-    """Reads all BasisCurves of a stage as one groom, at their first time sample.
+    """Reads all BasisCurves of a stage as one groom, at their first time sample. A PointInstancer gives a copy for each instance.
 
     Each prim becomes a group with the name of its path, unless `groom_group_id` gives the groups. Widths, `displayColor`,
     root UVs (`groom_root_uv`, `surface_uv_coordinate`, `st`), factors of the material (`stiffness`, `damping`, `drag`), guides (`groom_guide`, `groom_closest_guides`,
@@ -26,11 +27,12 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
     parts: dict[str, list] = {name: [] for name in ("radii", "groups", "uvs", "colors", "flags", "closest", "weights", *FACTORS)}
     names: list[str] = []
     notes = faults(stage) + left_out(stage, UsdGeom.BasisCurves, (UsdGeom.NurbsCurves, UsdGeom.HermiteCurves), "BasisCurves")
-    found = prims(stage, UsdGeom.BasisCurves)
+    found = placed(stage, UsdGeom.BasisCurves, to, notes)
     if not found:
         raise AbsentError("the stage has no visible BasisCurves" + because(notes))
-    notes += unused_primvars(found)
-    for prim in found:
+    notes += unused_primvars([prim for prim, _ in found])
+    total = 0
+    for prim, places in found:
         curves = UsdGeom.BasisCurves(prim)
         time = first_time([curves.GetPointsAttr(), curves.GetCurveVertexCountsAttr()])
         control, counts = curves.GetPointsAttr().Get(time), curves.GetCurveVertexCountsAttr().Get(time)
@@ -47,8 +49,10 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
         if kind == "cubic" and basis not in ("bezier", "bspline", "catmullRom"):
             raise FormatError(f"{prim.GetPath()} has the basis '{basis}'; bezier, bspline and catmullRom are read")
         check_counts(str(prim.GetPath()), counts, kind, basis)
-        linear, shift = world(prim, time, to)
-        length = float(np.cbrt(abs(np.linalg.det(linear))))
+        places = [world_of(prim, time, to)] if places is None else places
+        total += len(control) * len(places)
+        if total > MAX_POSITIONS:
+            raise FormatError(f"the curves and their instances have more than {MAX_POSITIONS} points; export fewer")
         group = len(names)
         names.append(str(prim.GetPath()))
         each = np.array([[varying_count(int(n), kind, basis, wrap) for n in counts], counts])
@@ -68,29 +72,31 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
         ids, flags = one("groom_group_id"), one("groom_guide")
         closest, weights = three("groom_closest_guides"), three("groom_guide_weights")
         material_radius, stiffer = material.read(prim, widths is not None, notes)
-        first = 0
-        before = len(strands)
-        for s, n in enumerate(counts):
-            own = control[first : first + n]
-            first += int(n)
-            points = on_curve(own, kind, basis, wrap) @ linear + shift
-            strands.append(points)
-            along = None if widths is None else expand(widths, width_kind, s, each, len(points))
-            without = np.nan if material_radius is None else material_radius
-            parts["radii"].append(np.full(len(points), without) if along is None else 0.5 * length * along)
-            shade = None if color is None else expand(color, color_kind, s, each, len(points))
-            parts["colors"].append(np.full((len(points), 3), np.nan) if shade is None else shade[:, :3])
-            root = None if uv is None else expand(uv, uv_kind, s, each, max(len(points), 1))
-            parts["uvs"].append(np.full(2, np.nan) if root is None else root[0][:2])
-            for name, (values, interpolation) in factors.items():
-                factor = None if values is None else expand(values, interpolation, s, each, max(len(points), 1))
-                without = np.nan if stiffer is None or name != "stiffness" else stiffer
-                parts[name].append(without if factor is None else float(np.mean(factor)))
-            parts["groups"].append(int(np.ravel(ids[s])[0]) if ids is not None else group)
-            parts["flags"].append(bool(np.any(flags[s])) if flags is not None else False)
-            if closest is not None and weights is not None:
-                parts["closest"].append(before + np.resize(closest[s], 3).astype(np.int64))
-                parts["weights"].append(np.resize(np.atleast_1d(weights[s]), 3))
+        for linear, shift in places:
+            first = 0
+            before = len(strands)
+            length = float(np.cbrt(abs(np.linalg.det(linear))))
+            for s, n in enumerate(counts):
+                own = control[first : first + n]
+                first += int(n)
+                points = on_curve(own, kind, basis, wrap) @ linear + shift
+                strands.append(points)
+                along = None if widths is None else expand(widths, width_kind, s, each, len(points))
+                without = np.nan if material_radius is None else material_radius
+                parts["radii"].append(np.full(len(points), without) if along is None else 0.5 * length * along)
+                shade = None if color is None else expand(color, color_kind, s, each, len(points))
+                parts["colors"].append(np.full((len(points), 3), np.nan) if shade is None else shade[:, :3])
+                root = None if uv is None else expand(uv, uv_kind, s, each, max(len(points), 1))
+                parts["uvs"].append(np.full(2, np.nan) if root is None else root[0][:2])
+                for name, (values, interpolation) in factors.items():
+                    factor = None if values is None else expand(values, interpolation, s, each, max(len(points), 1))
+                    without = np.nan if stiffer is None or name != "stiffness" else stiffer
+                    parts[name].append(without if factor is None else float(np.mean(factor)))
+                parts["groups"].append(int(np.ravel(ids[s])[0]) if ids is not None else group)
+                parts["flags"].append(bool(np.any(flags[s])) if flags is not None else False)
+                if closest is not None and weights is not None:
+                    parts["closest"].append(before + np.resize(closest[s], 3).astype(np.int64))
+                    parts["weights"].append(np.resize(np.atleast_1d(weights[s]), 3))
     return assemble(strands, parts, names, notes)
 
 

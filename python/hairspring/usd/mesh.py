@@ -9,7 +9,7 @@ from pxr import Usd, UsdGeom, UsdSkel
 
 from ..formats import MAX_POSITIONS, MAX_RATE, MAX_SAMPLES, AbsentError, FormatError, MovingMesh
 from ..shapes import distinct, spacing, triangulate
-from .stage import because, faults, left_out, open_stage, primvar, prims, quiet, space, world
+from .stage import because, faults, instancers, left_out, open_stage, primvar, prims, prototypes, quiet, space, world_of
 
 SURFACES = (UsdGeom.NurbsPatch, UsdGeom.Sphere, UsdGeom.Cube, UsdGeom.Cylinder, UsdGeom.Cone, UsdGeom.Capsule, UsdGeom.Plane)
 """Types of surfaces that are not read."""
@@ -71,7 +71,7 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
     stage = baked_skins(opened)
     to = space(stage, scale, up)
     meshes = prims(stage, UsdGeom.Mesh)
-    broken, notes = faults(opened), left_out(stage, UsdGeom.Mesh, SURFACES, "meshes")
+    broken, notes = faults(opened), left_out(stage, UsdGeom.Mesh, SURFACES, "meshes") + unread_instances(stage)
     if not meshes:
         # The reader of curves reports files that are missing.
         known = prims(stage, UsdGeom.BasisCurves)
@@ -92,7 +92,7 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
         if counts.min() < 0 or counts.sum() != len(indices) or np.any((indices < 0) | (indices >= len(points))):
             raise FormatError(f"the faces of {prim.GetPath()} name vertices that do not exist")
         own = triangulate(counts, indices, np.array(points, np.float64))
-        mirrored = np.linalg.det(world(prim, at[0], to)[0]) < 0
+        mirrored = np.linalg.det(world_of(prim, at[0], to)[0]) < 0
         if (str(mesh.GetOrientationAttr().Get()) == "leftHanded") != mirrored:
             own = own[:, ::-1]
         sizes.append(len(points))
@@ -113,7 +113,7 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
                     f"{prim.GetPath()} has {len(points)} points at time {time.GetValue():g} and {size} in the first sample;"
                     " export a mesh of constant topology"
                 )
-            linear, shift = world(prim, time, to)
+            linear, shift = world_of(prim, time, to)
             end = first + size
             frames[f, first:end] = points @ linear + shift
             first = end
@@ -123,6 +123,20 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
     return MovingMesh(
         frames[0].copy(), joined, together(uvs), parts, frames if moves else None, rate, notes, together(colors)
     )
+
+
+def unread_instances(stage: Usd.Stage) -> list[str]:
+    """Notes about instancers of meshes."""
+    notes = []
+    for prim in instancers(stage):
+        below = [p for root in prototypes(prim) if root for p in Usd.PrimRange(root, Usd.PrimAllPrimsPredicate)]
+        if any(p.IsA(UsdGeom.Mesh) for p in below):
+            count = len(UsdGeom.PointInstancer(prim).GetProtoIndicesAttr().Get(Usd.TimeCode.EarliestTime()) or [])
+            notes.append(
+                f"{prim.GetPath()} is a PointInstancer: its {count} instances are left out, and only prototypes that are"
+                " visible by themselves are read; export the instances as meshes"
+            )
+    return notes
 
 
 def together(arrays: list[np.ndarray | None]) -> np.ndarray | None:

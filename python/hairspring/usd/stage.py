@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Iterator
 
 import numpy as np
-from pxr import Tf, Usd, UsdGeom, UsdUtils
+from pxr import Gf, Tf, Usd, UsdGeom, UsdUtils
 
 from ..formats import FACTORS, FormatError
 from ..shapes import naming
@@ -84,10 +84,14 @@ def space(stage: Usd.Stage, scale: float | None, up: str | None) -> np.ndarray:
     return AXIS[axis].T * meters
 
 
+DRAWN = ("default", "render")
+"""Purposes of prims that belong to the picture."""
+
+
 def is_drawn(prim: Usd.Prim) -> bool:
     """Whether a prim is visible, and not a stand-in or a guide of the viewport."""
     image = UsdGeom.Imageable(prim)
-    return image.ComputePurpose() in ("default", "render") and image.ComputeVisibility() != "invisible"
+    return image.ComputePurpose() in DRAWN and image.ComputeVisibility() != "invisible"
 
 
 def all_prims(stage: Usd.Stage, kind) -> list[Usd.Prim]:
@@ -100,9 +104,19 @@ def prims(stage: Usd.Stage, kind) -> list[Usd.Prim]:
     return [prim for prim in all_prims(stage, kind) if is_drawn(prim)]
 
 
+def instancers(stage: Usd.Stage) -> list[Usd.Prim]:
+    """All instancers that are drawn."""
+    return prims(stage, UsdGeom.PointInstancer)
+
+
+def prototypes(instancer: Usd.Prim) -> list[Usd.Prim]:
+    """The prims that an instancer copies."""
+    targets = UsdGeom.PointInstancer(instancer).GetPrototypesRel().GetForwardedTargets()
+    return [instancer.GetStage().GetPrimAtPath(target) for target in targets]
+
+
 def left_out(stage: Usd.Stage, kind, others: tuple, into: str) -> list[str]:
-    """Notes about what is not read: hidden prims of the type `kind`, visible ones of the types `others`, and instancers of
-    the type `kind`."""
+    """Notes about what is not read: hidden prims of the type `kind`, and visible ones of the types `others`."""
     hidden = [str(prim.GetPath()) for prim in all_prims(stage, kind) if not is_drawn(prim)]
     notes = []
     if hidden:
@@ -111,16 +125,6 @@ def left_out(stage: Usd.Stage, kind, others: tuple, into: str) -> list[str]:
         names = [str(prim.GetPath()) for prim in prims(stage, other)]
         if names:
             notes.append(f"{other.__name__} prims are left out ({naming(names)}); convert them to {into}")
-    for prim in prims(stage, UsdGeom.PointInstancer):
-        instancer = UsdGeom.PointInstancer(prim)
-        prototypes = [stage.GetPrimAtPath(target) for target in instancer.GetPrototypesRel().GetForwardedTargets()]
-        below = [p for root in prototypes if root for p in Usd.PrimRange(root, Usd.PrimAllPrimsPredicate)]
-        if any(p.IsA(kind) for p in below):
-            count = len(instancer.GetProtoIndicesAttr().Get(Usd.TimeCode.EarliestTime()) or [])
-            notes.append(
-                f"{prim.GetPath()} is a PointInstancer: its {count} instances are left out, and only prototypes that are"
-                f" visible by themselves are read; export the instances as {into}"
-            )
     return notes
 
 
@@ -138,9 +142,14 @@ def first_time(attributes: list[Usd.Attribute]) -> Usd.TimeCode:
     return Usd.TimeCode(min(times)) if times else Usd.TimeCode.Default()
 
 
-def world(prim: Usd.Prim, time: Usd.TimeCode, to: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def world_of(prim: Usd.Prim, time: Usd.TimeCode, to: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Linear part and translation of a prim's transform, to meters and Y up; for row vectors."""
-    m = np.array(UsdGeom.Imageable(prim).ComputeLocalToWorldTransform(time))
+    return world(UsdGeom.Imageable(prim).ComputeLocalToWorldTransform(time), to)
+
+
+def world(transform: Gf.Matrix4d, to: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Linear part and translation of a transform in the stage, to meters and Y up; for row vectors."""
+    m = np.array(transform)
     return m[:3, :3] @ to, m[3, :3] @ to
 
 

@@ -10,7 +10,7 @@ from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, Vt
 
 from ..description import Description, MovingGroom, identifier, publish
 from . import material
-from .stage import open_stage, quiet, space, world
+from .stage import open_stage, quiet, space, world_of
 
 DEFORMABLE = "PhysicsCurvesDeformableSimAPI"
 """The applied schema of curves that a simulation deforms (AOUSD proposal "Deformable Body Physics", curves)."""
@@ -102,7 +102,7 @@ class CurvesWriter:
                 own = slice(int(strands[0]), int(strands[-1]) + 1)
                 if len(strands) != own.stop - own.start:
                     raise ValueError(f"the strands of {name} are not in one piece")
-                linear, shift = world(prim, Usd.TimeCode.EarliestTime(), to)
+                linear, shift = world_of(prim, Usd.TimeCode.EarliestTime(), to)
                 back = np.linalg.inv(linear)
                 curves = UsdGeom.BasisCurves(self.stage.OverridePrim(prim.GetPath()))
                 self._describe(curves, groom, own, back, shift, complete=False)

@@ -1,0 +1,89 @@
+"""One variant: a clip, a picture and a bake in a folder of its own."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import sys
+import time
+from pathlib import Path
+
+from .programs import CHILDREN
+
+
+def key_of(task: dict, scene: Path) -> str:
+    """Identifies everything that the results of a task depend on: options, version, the scene and the files that it names."""
+    from .. import _native
+
+    parts = [task["text"], task["frames"], task["fps"], task["size"], task["bake"], _native.__version__]
+    return hashlib.sha256(json.dumps([*parts, _native.scene_inputs(scene)]).encode()).hexdigest()
+
+
+def run_variant(task: dict) -> dict:
+    """Simulates one variant in its folder. Runs here or on another machine, which has the same files."""
+    try:
+        return simulate_variant(task)
+    except OSError as error:
+        return {"error": unwritable(error, task["folder"]), "code": 5}
+
+
+def unwritable(error: OSError, path: Path | str) -> str:
+    """A sentence for a file that could not be written."""
+    return f"{error.filename or path} could not be written: {error.strerror or error}"
+
+
+def simulate_variant(task: dict) -> dict:
+    """As `run_variant`, with an exception if a file cannot be written."""
+    from .. import HairspringError
+
+    if CHILDREN.ended:
+        return {"error": "interrupted", "code": 130}
+    folder = Path(task["folder"])
+    folder.mkdir(parents=True, exist_ok=True)
+    scene, done = folder / "scene.toml", folder / "done.json"
+    scene.write_text(task["text"])
+    try:
+        key = key_of(task, scene)
+    except HairspringError:
+        # The program finds the same error and knows its exit code.
+        key = ""
+    if key and done.exists():
+        try:
+            before = json.loads(done.read_text())
+        except ValueError:
+            before = {}
+        if before.get("key") == key and all((folder / name).exists() for name in before.get("files", [])):
+            return before | {"kept": True}
+    # A bake that was interrupted continues, unless something has changed since.
+    started = folder / "started.txt"
+    resume = ["--resume"] if key and started.exists() and started.read_text() == key else []
+    started.write_text(key)
+    # The earlier results are replaced from here on.
+    done.unlink(missing_ok=True)
+    program = [sys.executable, "-m", "hairspring", "--quiet"]
+    frames = ["--frames", task["frames"]] if task["frames"] else []
+    commands = [
+        ["render", str(scene), "-o", str(folder / "clip.mp4"), "--fps", task["fps"], "--size", task["size"], *frames, "--json"],
+        ["render", str(scene), "-o", str(folder / "still.png"), "--size", task["size"], *task["still"]],
+    ]
+    if task["bake"]:
+        name = "hair.####.hair" if task["bake"] == "hair" else f"hair.{task['bake']}"
+        commands.append(["bake", str(scene), "-o", str(folder / name), "--fps", task["fps"], *frames, *resume])
+    began, result = time.time(), {}
+    with open(folder / "log.txt", "a") as log:
+        for command in commands:
+            code, output, errors = CHILDREN.run([*program, *command])
+            log.write(f"$ hairspring {' '.join(command)}\n{output}{errors}")
+            if code:
+                lines = errors.strip().splitlines() or [f"the program ended with code {code}"]
+                sentence = next((line.removeprefix("error: ") for line in lines if line.startswith("error: ")), lines[-1])
+                return {"error": sentence, "code": code}
+            if "--json" in command:
+                result = json.loads(output)
+    files = sorted(f.name for f in folder.iterdir() if f.is_file() and not f.name.startswith(".") and f != done)
+    result |= {"key": key, "files": files, "seconds": round(time.time() - began, 2)}
+    pending = folder / ".done.json"
+    pending.write_text(json.dumps(result))
+    os.replace(pending, done)
+    return result
