@@ -11,6 +11,10 @@ const SAMPLES: usize = 5_000;
 /// Distance of a root from the skin above which it is reported [m].
 const FAR: f32 = 0.01;
 
+/// Share of reversed strands above which a part of a groom is reported, and above which all of it counts as reversed.
+const SOME_REVERSED: f32 = 0.1;
+const ALL_REVERSED: f32 = 0.8;
+
 /// Distances of a groom's strands from the skin of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SkinDistance {
@@ -20,8 +24,8 @@ pub struct SkinDistance {
     pub max: f32,
     /// Median distance of the tips [m].
     pub tip_median: f32,
-    /// Whether most strands begin away from the skin and end on it.
-    pub reversed: bool,
+    /// Share of the strands that begin away from the skin and end on it, 0 to 1.
+    pub reversed: f32,
 }
 
 impl SkinDistance {
@@ -39,7 +43,7 @@ impl SkinDistance {
         let ends: Vec<[f32; 2]> = ends.collect();
         // A root a little below the skin may be farther from it than a tip that lies on it.
         let turned = ends.iter().filter(|[root, tip]| *root > 0.002 && *tip < 0.5 * root).count();
-        let reversed = turned * 2 > ends.len();
+        let reversed = turned as f32 / ends.len().max(1) as f32;
         let sorted = |end: usize| {
             let mut all: Vec<f32> = ends.iter().map(|e| e[end]).collect();
             all.sort_by(f32::total_cmp);
@@ -58,10 +62,16 @@ impl SkinDistance {
     /// Describes what does not fit, and what to do. `turned` is whether `reverse` is set.
     pub(crate) fn note(&self, turned: bool) -> Option<String> {
         let Self { median, max, tip_median, reversed } = *self;
-        if reversed {
+        if reversed > ALL_REVERSED {
             let remedy = if turned { "remove `reverse`" } else { "set `reverse = true`" };
             return Some(format!(
                 "the roots are {median:.3} m from the skin and the tips {tip_median:.3} m, so the strands are probably reversed; {remedy} in the [[groom]]"
+            ));
+        }
+        if reversed > SOME_REVERSED {
+            return Some(format!(
+                "{:.0} % of the strands begin away from the skin and end on it, so they are probably reversed; `reverse` of the [[groom]] turns all strands, so turn these round in the program that exported them",
+                100.0 * reversed
             ));
         }
         let remedy = "they are held there; set `scale`, `up` or `transform` of the [[groom]], or `scale` of the [body], if that is wrong";

@@ -184,6 +184,15 @@ fn reversed_strands_are_reported_and_can_be_turned() {
     let folder = folder(&fur(CENTER, 0.1, 0.1, 1.0));
     let (_, notes) = on_head(&folder, "scale = 1.0\nreverse = true");
     assert!(notes.contains("remove `reverse`"), "{notes}");
+    // Neither setting is right for a groom of which a part is reversed.
+    for share in [0.3, 0.6] {
+        let mut strands = fur(CENTER, 0.1, 0.1, 1.0);
+        let turned = (share * strands.len() as f32) as usize;
+        strands.iter_mut().take(turned).for_each(|strand| strand.reverse());
+        let (_, notes) = on_head(&self::folder(&strands), "scale = 1.0");
+        let part = format!("{:.0} % of the strands begin away from the skin", 100.0 * share);
+        assert!(notes.contains(&part) && !notes.contains("`reverse = true`"), "{notes}");
+    }
     // Values of points turn with them.
     let mut groom = samples::groom(4);
     let before = groom.clone();
