@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("pxr")
 from conftest import tuft
 from pxr import Gf, Sdf, Tf, Usd, UsdGeom, Vt
-from test_usd import CORNERS, FACES, a_mesh, define_curves, new_stage, volume
+from stages import CORNERS, FACES, a_mesh, define_curves, new_stage, volume
 
 import hairspring as hs
 from hairspring import usd

@@ -1,4 +1,4 @@
-"""Stages: opening them, what they hold, and what is left out."""
+"""Opens stages, finds their prims, and reports prims that the readers skip."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def open_stage(path: Path) -> Usd.Stage:
 
 
 def used_files(path: str | Path) -> list[str]:
-    """Returns the layers and other files that a stage consists of. What is missing is left out."""
+    """Returns the layers and other files that a stage consists of, without those that are missing."""
     with quiet():
         layers, assets, _ = UsdUtils.ComputeAllDependencies(str(path))
     found = [layer.realPath for layer in layers] + list(assets)
@@ -116,7 +116,7 @@ def prototypes(instancer: Usd.Prim) -> list[Usd.Prim]:
 
 
 def left_out(stage: Usd.Stage, kind, others: tuple, into: str) -> list[str]:
-    """Notes about what is not read: hidden prims of the type `kind`, and visible ones of the types `others`."""
+    """Returns notes about prims that the readers skip: hidden ones of the type `kind`, and visible ones of the types `others`."""
     hidden = [str(prim.GetPath()) for prim in all_prims(stage, kind) if not is_drawn(prim)]
     notes = []
     if hidden:
