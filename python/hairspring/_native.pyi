@@ -34,6 +34,8 @@ class Groom:
         drag: ArrayLike | None = None,
         friction: ArrayLike | None = None,
         charge: ArrayLike | None = None,
+        flatness: ArrayLike | None = None,
+        tether: ArrayLike | None = None,
     ) -> Groom: ...
     @staticmethod
     def read(path: _Path, *, scale: float | None = None, up: str | None = None) -> Groom: ...

@@ -54,7 +54,7 @@ class AbsentError(FormatError):
     """A file that has nothing of the kind that is to be read."""
 
 
-FACTORS = ("stiffness", "damping", "drag", "friction", "charge", "density")
+FACTORS = ("stiffness", "damping", "drag", "friction", "charge", "flatness", "tether", "density")
 """Names of the attributes with a number for each strand: factors of the material, and the share of strands that is kept."""
 
 MAX_POSITIONS = 150_000_000

@@ -45,11 +45,14 @@ def test_factors_of_the_material_are_read(tmp_path):
     stiff = np.linspace(0.5, 2, 12).astype(np.float32)
     api.CreatePrimvar("stiffness", Sdf.ValueTypeNames.FloatArray, "uniform").Set(Vt.FloatArray.FromNumpy(stiff))
     api.CreatePrimvar("drag", Sdf.ValueTypeNames.Float, "constant").Set(3.0)
+    api.CreatePrimvar("flatness", Sdf.ValueTypeNames.Float, "constant").Set(0.6)
+    api.CreatePrimvar("tether", Sdf.ValueTypeNames.Float, "constant").Set(1.2)
     stage.Save()
     factors = hs.Groom.read(tmp_path / "a.usda").factors
     np.testing.assert_allclose(factors["stiffness"], stiff, rtol=1e-6)
     np.testing.assert_allclose(factors["drag"], 3.0)
     np.testing.assert_allclose(factors["damping"], 1.0)
+    np.testing.assert_allclose([factors["flatness"], factors["tether"]], [[0.6] * 12, [1.2] * 12], rtol=1e-6)
 
 
 def test_a_density_mask_thins_the_strands(tmp_path):

@@ -97,12 +97,13 @@ mod tests {
     }
 
     /// Parameters without effect in the built-in scene, and text that activates them.
-    const ENABLED_BY: [(&str, &str); 24] = [
+    const ENABLED_BY: [(&str, &str); 25] = [
         ("effects.curl_length", "[builtin.effects]\ncurl_radius = 0.004\n"),
         ("global_shape.profile", "[material.m]\nglobal_shape = { pull = 2.0 }\n"),
         ("global_shape.damping", "[material.m]\nglobal_shape = { pull = 2.0 }\n"),
         ("radius_profile", "[material.m]\nradius = 3e-5\n"),
         ("charge_profile", "[material.m]\ncharge = 1e-9\n"),
+        ("tether_profile", "[material.m]\ntether = 1.1\n"),
         ("wind.gust", "[wind]\nvelocity = [0.0, 0.0, 2.0]\n"),
         ("wind.gust_rate", "[wind]\nvelocity = [0.0, 0.0, 2.0]\ngust = 0.5\n"),
         ("turbulence.size", "[turbulence]\nstrength = 1.0\n"),

@@ -9,8 +9,8 @@
 //!
 //! `strand` (or `curve`, `id`), `x`, `y` and `z` are required; `radius` or `width`, and `r`, `g`, `b` (linear, 0 to 1) are optional.
 //! The first point of a strand may give attributes of the whole strand: `group`, `guide` (0 or 1), `u` and `v` of the root,
-//! `density` (the share of the strands around it that is kept), and the factors `stiffness`, `damping`, `drag`, `friction`
-//! and `charge` of the material. Other columns are ignored with a note. Columns are separated by commas, semicolons or
+//! `density` (the share of the strands around it that is kept), and the factors `stiffness`, `damping`, `drag`, `friction`,
+//! `charge`, `flatness` and `tether` of the material. Other columns are ignored with a note. Columns are separated by commas, semicolons or
 //! tabs; a cell in quotation marks may contain them. The points of a strand are consecutive, root first.
 
 use crate::{

@@ -41,8 +41,7 @@ impl SkinDistance {
             Some([distance(skin, *strand.first()?)?, distance(skin, *strand.last()?)?])
         });
         let ends: Vec<[f32; 2]> = ends.collect();
-        // A root a little below the skin may be farther from it than a tip that lies on it.
-        let turned = ends.iter().filter(|[root, tip]| *root > 0.002 && *tip < 0.5 * root).count();
+        let turned = ends.iter().filter(|ends| is_reversed(**ends)).count();
         let reversed = turned as f32 / ends.len().max(1) as f32;
         let sorted = |end: usize| {
             let mut all: Vec<f32> = ends.iter().map(|e| e[end]).collect();
@@ -59,7 +58,7 @@ impl SkinDistance {
         })
     }
 
-    /// Describes what does not fit, and what to do. `turned` is whether `reverse` is set.
+    /// Describes what does not fit, and what to do. `turned` is whether all strands were reversed.
     pub(crate) fn note(&self, turned: bool) -> Option<String> {
         let Self { median, max, tip_median, reversed } = *self;
         if reversed > ALL_REVERSED {
@@ -70,7 +69,7 @@ impl SkinDistance {
         }
         if reversed > SOME_REVERSED {
             return Some(format!(
-                "{:.0} % of the strands begin away from the skin and end on it, so they are probably reversed; `reverse` of the [[groom]] turns all strands, so turn these round in the program that exported them",
+                "{:.0} % of the strands begin away from the skin and end on it, so they are probably reversed; set `reverse = \"nearest\"` in the [[groom]] to turn only these",
                 100.0 * reversed
             ));
         }
@@ -82,6 +81,20 @@ impl SkinDistance {
             format!("some roots are up to {max:.3} m from the skin (median {median:.3} m); {remedy}")
         })
     }
+}
+
+/// Whether a strand with its first and last point at these distances from the skin [m] is probably reversed.
+fn is_reversed([first, last]: [f32; 2]) -> bool {
+    // A root a little below the skin may be farther from it than a tip that lies on it.
+    first > 0.002 && last < 0.5 * first
+}
+
+/// Reverses the strands of a groom that begin away from the skin and end on it. Returns their number.
+pub(crate) fn reverse_to_skin(groom: &mut Groom, skin: &NearestTree<'_>) -> usize {
+    groom.reverse_strands(|_, points| {
+        let ends = [points.first(), points.last()].map(|p| p.and_then(|p| distance(skin, *p)));
+        matches!(ends, [Some(first), Some(last)] if is_reversed([first, last]))
+    })
 }
 
 /// Distance of a point from the skin [m].

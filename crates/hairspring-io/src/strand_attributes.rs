@@ -9,8 +9,19 @@ use hairspring::{
 };
 
 /// Names of the attributes that are numbers, in the order of [`StrandAttributes::numbers`].
-pub(crate) const NUMBERS: [&str; 9] =
-    ["stiffness", "damping", "drag", "friction", "charge", "density", "guide", "u", "v"];
+pub(crate) const NUMBERS: [&str; 11] = [
+    "stiffness",
+    "damping",
+    "drag",
+    "friction",
+    "charge",
+    "flatness",
+    "tether",
+    "density",
+    "guide",
+    "u",
+    "v",
+];
 
 /// Name of the attribute that is a word.
 pub(crate) const GROUP: &str = "group";
@@ -32,7 +43,8 @@ impl StrandAttributes {
     pub fn apply(self, read: &mut Read) {
         let groom = &mut read.groom;
         let strands = groom.strand_count();
-        let [stiffness, damping, drag, friction, charge, density, guide, u, v] = self.numbers;
+        let [stiffness, damping, drag, friction, charge, flatness, tether, density, guide, u, v] =
+            self.numbers;
         if !self.groups.is_empty() {
             let mut names: Vec<String> = Vec::new();
             let index = |name: &String, names: &mut Vec<String>| match names.iter().position(|n| n == name) {
@@ -59,6 +71,8 @@ impl StrandAttributes {
             (drag, |s, x| s.drag = x),
             (friction, |s, x| s.friction = x),
             (charge, |s, x| s.charge = x),
+            (flatness, |s, x| s.flatness = x),
+            (tether, |s, x| s.tether = x),
         ] {
             if !values.is_empty() {
                 groom.scales.resize(strands, StrandScale::default());

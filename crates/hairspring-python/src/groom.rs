@@ -81,6 +81,10 @@ struct Arrays<'py> {
     friction: Option<Floats<'py>>,
     #[pyo3(default)]
     charge: Option<Floats<'py>>,
+    #[pyo3(default)]
+    flatness: Option<Floats<'py>>,
+    #[pyo3(default)]
+    tether: Option<Floats<'py>>,
 }
 
 impl Arrays<'_> {
@@ -92,6 +96,8 @@ impl Arrays<'_> {
             ("drag", &self.drag),
             ("friction", &self.friction),
             ("charge", &self.charge),
+            ("flatness", &self.flatness),
+            ("tether", &self.tether),
         ];
         let mut scales = Vec::new();
         for (name, array) in given {
@@ -109,7 +115,9 @@ impl Arrays<'_> {
                     "damping" => scale.damping = *n,
                     "drag" => scale.drag = *n,
                     "friction" => scale.friction = *n,
-                    _ => scale.charge = *n,
+                    "charge" => scale.charge = *n,
+                    "flatness" => scale.flatness = *n,
+                    _ => scale.tether = *n,
                 }
             }
         }
@@ -198,7 +206,7 @@ fn fits(name: &str, length: usize, expected: usize, what: &str) -> PyResult<()> 
 #[pymethods]
 impl Groom {
     #[new]
-    #[pyo3(signature = (points, offsets, *, radii=None, groups=None, root_uvs=None, colors=None, guides=None, guide_weights=None, stiffness=None, damping=None, drag=None, friction=None, charge=None))]
+    #[pyo3(signature = (points, offsets, *, radii=None, groups=None, root_uvs=None, colors=None, guides=None, guide_weights=None, stiffness=None, damping=None, drag=None, friction=None, charge=None, flatness=None, tether=None))]
     #[expect(clippy::too_many_arguments, reason = "one for each array; keywords in Python")]
     fn new(
         points: Floats,
@@ -214,6 +222,8 @@ impl Groom {
         drag: Option<Floats>,
         friction: Option<Floats>,
         charge: Option<Floats>,
+        flatness: Option<Floats>,
+        tether: Option<Floats>,
     ) -> PyResult<Self> {
         let arrays = Arrays {
             points,
@@ -229,6 +239,8 @@ impl Groom {
             drag,
             friction,
             charge,
+            flatness,
+            tether,
         };
         arrays.groom().map(Self::of)
     }
@@ -340,8 +352,8 @@ impl Groom {
         )))
     }
 
-    /// Factors of the material for each strand: a dict of `stiffness`, `damping`, `drag`, `friction` and
-    /// `charge`, [strands] float32; or None.
+    /// Factors of the material for each strand: a dict of `stiffness`, `damping`, `drag`, `friction`, `charge`,
+    /// `flatness` and `tether`, [strands] float32; or None.
     #[getter]
     fn factors<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         let scales = &self.inner.scales;
@@ -352,6 +364,8 @@ impl Groom {
         factors.set_item("drag", of(|s| s.drag))?;
         factors.set_item("friction", of(|s| s.friction))?;
         factors.set_item("charge", of(|s| s.charge))?;
+        factors.set_item("flatness", of(|s| s.flatness))?;
+        factors.set_item("tether", of(|s| s.tether))?;
         Ok((!scales.is_empty()).then_some(factors))
     }
 

@@ -18,7 +18,7 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
     """Reads all BasisCurves of a stage as one groom, at their first time sample. A PointInstancer gives a copy for each instance.
 
     Each prim becomes a group with the name of its path, unless `groom_group_id` gives the groups. Widths, `displayColor`,
-    root UVs (`groom_root_uv`, `surface_uv_coordinate`, `st`), factors of the material (`stiffness`, `damping`, `drag`), guides (`groom_guide`, `groom_closest_guides`,
+    root UVs (`groom_root_uv`, `surface_uv_coordinate`, `st`), factors of the material (those of `FACTORS`), guides (`groom_guide`, `groom_closest_guides`,
     `groom_guide_weights`) are read in every interpolation.
     """
     stage = open_stage(path)

@@ -121,11 +121,14 @@ pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) 
             _ => "right: ",
         };
         let volume = stage.volume.map(|v| format!(", volume {:.0} %", 100.0 * v.volume_ratio));
+        let started =
+            (m.started_inside_points > 0).then(|| format!(" ({} from the start)", m.started_inside_points));
         ui.label(format!(
-            "{side}stretch {:.2} % mean, {:.2} % worst; {} points and {} segments inside{}",
+            "{side}stretch {:.2} % mean, {:.2} % worst; {} points{} and {} segments inside{}",
             100.0 * m.stretch_mean,
             100.0 * m.stretch_max,
             m.inside_points,
+            started.unwrap_or_default(),
             m.deep_segments + m.held_segments,
             volume.unwrap_or_default()
         ));

@@ -32,6 +32,7 @@ pub const ALL: &[Parameter] = parameters! {
         Groom "thicken.tip", "… tip spread", number(0.0, 10.0);
         Material "preset", "Material", Kind::Choice;
         Material "tether", "Tether", number(0.0, 3.0);
+        Material "tether_profile", "… profile", Kind::Profile;
         Material "global_shape.pull", "Global shape", number(0.0, 20.0);
         Material "global_shape.profile", "… profile", Kind::Profile;
         Material "global_shape.damping", "… damping", number(0.0, 4.0);
@@ -50,6 +51,7 @@ pub const ALL: &[Parameter] = parameters! {
         Material "damping", "Damping", number(0.0, 0.2);
         Material "damping_profile", "… profile", Kind::Profile;
         Material "flatness", "Flatness", Kind::Bounded;
+        Material "flatness_profile", "… profile", Kind::Profile;
         Material "young", "Young's modulus", scale(1e8, 1e11);
         Material "shear", "Shear modulus", scale(1e7, 1e11);
     }

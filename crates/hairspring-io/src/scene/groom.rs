@@ -3,13 +3,13 @@
 use super::{
     Reader,
     file::FileName,
-    groom_file::{ColorSource, GroomFile},
+    groom_file::{ColorSource, GroomFile, Reverse},
 };
 use crate::{
     ReadOptions, Result,
     load::read_groom_on,
     read_bones,
-    skin_distance::{SkinDistance, unit_on_skin},
+    skin_distance::{SkinDistance, reverse_to_skin, unit_on_skin},
     tfxbone::RootBones,
     units::{FitUnit, extent},
 };
@@ -37,6 +37,10 @@ impl Reader<'_> {
         body: Option<&Body>,
     ) -> Result<Groom> {
         let place = named.transform.to_affine();
+        if named.reverse == Reverse::Nearest && body.is_none() {
+            let text = "`reverse = \"nearest\"` needs a [body], which has the skin".into();
+            return Err(self.wrong(named.start(), "reverse", text));
+        }
         let skin = body.filter(|_| named.file.is_some()).map(|body| Skin {
             tree: NearestTree::new(&body.mesh),
             size: extent(body.mesh.positions.iter().copied()),
@@ -54,9 +58,17 @@ impl Reader<'_> {
             groom.roots.clear();
         }
         if let (Some(file), Some(skin)) = (&named.file, &skin) {
-            let note =
-                SkinDistance::new(&groom, &skin.tree).and_then(|distance| distance.note(named.reverse));
-            self.note(&self.resolve(file), note.into_iter().collect());
+            let mut notes = Vec::new();
+            if named.reverse == Reverse::Nearest {
+                let turned = reverse_to_skin(&mut groom, &skin.tree);
+                notes.push(format!(
+                    "{turned} of {} strands ended nearer to the skin than they began; their points are reversed",
+                    groom.strand_count()
+                ));
+            }
+            let turned = named.reverse == Reverse::All;
+            notes.extend(SkinDistance::new(&groom, &skin.tree).and_then(|distance| distance.note(turned)));
+            self.note(&self.resolve(file), notes);
         }
         self.apply_maps(&named.maps, &mut groom, body.map(|b| &b.mesh))?;
         if named.thicken.copies > 0 {
@@ -97,7 +109,7 @@ impl Reader<'_> {
         });
         let read = read_groom_on(&path, &options, fit.as_ref().map(|fit| fit as FitUnit<'_>));
         let mut loaded = self.named(read, file, "groom")?;
-        if named.reverse {
+        if named.reverse == Reverse::All {
             loaded.value.reverse();
         }
         if !loaded.value.colors.is_empty() {

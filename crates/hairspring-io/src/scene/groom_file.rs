@@ -28,9 +28,10 @@ define_settings! {
         scale: Option<f32>, ["m"], {above 0}, default "from the format, or guessed and reported";
         /// The axis that points up.
         up: Option<Axis>, "none", {words &["y", "z"]}, default "`\"z\"` for `.hair`, `\"y\"` otherwise";
-        /// Whether the last point of each strand is its root.
-        #[serde(default)]
-        reverse: bool = false, "none", {switch};
+        /// Whether the last point of each strand is its root. `nearest`: of each strand whose last point is
+        /// nearer to the skin than the first.
+        #[serde(default, deserialize_with = "reverse")]
+        reverse: Reverse = false, "none", {text "`true`, `false`, `\"nearest\"`"};
         /// Source of the color of a file that has a color per point: the file, or `look`.
         #[serde(default)]
         colors: ColorSource = "file", "none", {words &["file", "look"]};
@@ -53,7 +54,7 @@ define_settings! {
         #[serde(default)]
         effects: Effects, "none", {table};
         /// Parameters that vary over the scalp: `bend`, `damping`, `drag`, `friction`, `charge`, `global_shape`,
-        /// `radius`, `length`, `density`, `comb`.
+        /// `radius`, `flatness`, `tether`, `length`, `density`, `comb`.
         #[serde(default)]
         maps: MapsFile, "none", {
             text "a table of maps; each has a `texture`, `vertex_colors = true` or `values`, and may have `channel`, `low` and `high`"
@@ -61,6 +62,16 @@ define_settings! {
         /// File of bones: each root binds to skin that follows one of its bones. Needs a skinned body.
         bones: Option<FileName>, "none", {text "`.tfxbone`"}, default "none";
     }
+}
+
+/// Which strands of a file have their root at the last point.
+#[derive(Clone, Copy, Default, PartialEq)]
+pub(super) enum Reverse {
+    #[default]
+    None,
+    All,
+    /// Those that end nearer to the skin than they begin.
+    Nearest,
 }
 
 /// Where the color of hair comes from if the groom's file has a color per point.
@@ -79,7 +90,7 @@ pub(super) struct GroomGeometry<'a> {
     grow: Option<Grown<'a>>,
     thicken: Thicken,
     units: (Option<f32>, Option<Axis>),
-    reverse: bool,
+    reverse: Reverse,
     colors: ColorSource,
     transform: Placement,
     guides: Guides,
@@ -194,6 +205,23 @@ pub(super) fn guides<'de, D: Deserializer<'de>>(from: D) -> Result<Guides, D::Er
         Named::Name(name) if name == "all" => Ok(Guides::All),
         Named::Name(name) if name == "file" => Ok(Guides::FromGroom),
         _ => Err(de::Error::custom("expected a number of guides above 0, \"all\" or \"file\"")),
+    }
+}
+
+/// `true`, `false` or `"nearest"`.
+fn reverse<'de, D: Deserializer<'de>>(from: D) -> Result<Reverse, D::Error> {
+    const EXPECTED: &str = "expected true, false or \"nearest\"";
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "expected true, false or \"nearest\"")]
+    enum Named {
+        Switch(bool),
+        Name(String),
+    }
+    match Named::deserialize(from)? {
+        Named::Switch(false) => Ok(Reverse::None),
+        Named::Switch(true) => Ok(Reverse::All),
+        Named::Name(name) if name == "nearest" => Ok(Reverse::Nearest),
+        Named::Name(_) => Err(de::Error::custom(EXPECTED)),
     }
 }
 

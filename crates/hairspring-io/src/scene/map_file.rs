@@ -25,6 +25,10 @@ pub(super) struct MapsFile {
     pub global_shape: Field,
     /// Multiplier of the radius.
     pub radius: Field,
+    /// Multiplier of the flatness.
+    pub flatness: Field,
+    /// Multiplier of the tether.
+    pub tether: Field,
     /// Share of a strand's length that is left, as by a cut.
     pub length: Field,
     /// Share of the strands that are kept.
@@ -35,7 +39,7 @@ pub(super) struct MapsFile {
 
 impl MapsFile {
     /// Returns all maps by name.
-    pub(super) fn all(&self) -> [(&'static str, &Field); 10] {
+    pub(super) fn all(&self) -> [(&'static str, &Field); 12] {
         [
             ("bend", &self.bend),
             ("damping", &self.damping),
@@ -44,6 +48,8 @@ impl MapsFile {
             ("charge", &self.charge),
             ("global_shape", &self.global_shape),
             ("radius", &self.radius),
+            ("flatness", &self.flatness),
+            ("tether", &self.tether),
             ("length", &self.length),
             ("density", &self.density),
             ("comb", &self.comb),

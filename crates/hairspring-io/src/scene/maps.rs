@@ -203,6 +203,8 @@ fn scale(groom: &mut Groom, name: &str, values: &[f32]) {
             "drag" => &mut scale.drag,
             "friction" => &mut scale.friction,
             "charge" => &mut scale.charge,
+            "flatness" => &mut scale.flatness,
+            "tether" => &mut scale.tether,
             _ => &mut scale.global_shape,
         };
         *of *= value;

@@ -184,14 +184,25 @@ fn reversed_strands_are_reported_and_can_be_turned() {
     let folder = folder(&fur(CENTER, 0.1, 0.1, 1.0));
     let (_, notes) = on_head(&folder, "scale = 1.0\nreverse = true");
     assert!(notes.contains("remove `reverse`"), "{notes}");
-    // Neither setting is right for a groom of which a part is reversed.
+    // A groom of which a part is reversed is turned strand by strand.
     for share in [0.3, 0.6] {
         let mut strands = fur(CENTER, 0.1, 0.1, 1.0);
+        let right = Groom::from_strands(&strands, 35e-6).points;
         let turned = (share * strands.len() as f32) as usize;
         strands.iter_mut().take(turned).for_each(|strand| strand.reverse());
-        let (_, notes) = on_head(&self::folder(&strands), "scale = 1.0");
+        let folder = self::folder(&strands);
+        let (_, notes) = on_head(&folder, "scale = 1.0");
         let part = format!("{:.0} % of the strands begin away from the skin", 100.0 * share);
-        assert!(notes.contains(&part) && !notes.contains("`reverse = true`"), "{notes}");
+        assert!(notes.contains(&part) && notes.contains("`reverse = \"nearest\"`"), "{notes}");
+        let (groom, notes) = on_head(&folder, "scale = 1.0\nreverse = \"nearest\"");
+        let part = format!("{turned} of {} strands ended nearer to the skin", strands.len());
+        assert!(notes.contains(&part) && !notes.contains("probably"), "{notes}");
+        assert_eq!(groom.points, right);
+        // The place of the groom counts, not that in its file.
+        strands.iter_mut().flatten().for_each(|p| *p += Vec3::Z);
+        let moved = "scale = 1.0\nreverse = \"nearest\"\ntransform.position = [0.0, 0.0, -1.0]";
+        let (groom, _) = on_head(&self::folder(&strands), moved);
+        assert!(groom.points.iter().zip(&right).all(|(a, b)| a.distance(*b) < 1e-6), "share {share}");
     }
     // Values of points turn with them.
     let mut groom = samples::groom(4);

@@ -79,13 +79,15 @@ fn each_source_gives_its_value_at_the_root() {
 fn each_parameter_follows_its_map() {
     let map = "{ values = \"three.txt\" }";
     type Of = fn(&StrandScale) -> f32;
-    let factors: [(&str, Of); 6] = [
+    let factors: [(&str, Of); 8] = [
         ("bend", |s| s.bend),
         ("damping", |s| s.damping),
         ("drag", |s| s.drag),
         ("friction", |s| s.friction),
         ("charge", |s| s.charge),
         ("global_shape", |s| s.global_shape),
+        ("flatness", |s| s.flatness),
+        ("tether", |s| s.tether),
     ];
     for (name, of) in factors {
         let groom = groom(&format!("{name} = {map}"));

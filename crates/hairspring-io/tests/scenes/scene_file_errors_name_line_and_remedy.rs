@@ -270,7 +270,9 @@ fn values_of_the_wrong_type_are_described_in_toml() {
             &["line 6", "`rotation` needs"],
         ),
         ("colors = \"lok\"\n".into(), &["line 3", "did you mean `look`?"]),
-        ("reverse = \"yes\"\n".into(), &["line 3", "`reverse` needs true or false"]),
+        ("reverse = \"yes\"\n".into(), &["line 3", "true, false or \"nearest\""]),
+        ("reverse = 3\n".into(), &["line 3", "true, false or \"nearest\""]),
+        ("reverse = \"nearest\"\n".into(), &["line 3", "needs a [body]"]),
     ] {
         let message = message(&format!("{GROOM}{text}"));
         println!("{message}");

@@ -72,12 +72,18 @@ fn sag(ei: impl Fn(f64) -> f64, line: impl Fn(f64) -> f64) -> f64 {
 
 /// Sag of the simulated tip at rest [m].
 fn rests_at(material: &Material, gravity: f32) -> f64 {
-    let mut simulation = strand(material, gravity);
+    rests_along(material, Vec3::NEG_Y * gravity)
+}
+
+/// Displacement of the simulated tip at rest along gravity [m].
+fn rests_along(material: &Material, gravity: Vec3) -> f64 {
+    let solver = Solver { sag_free: false, substeps: 8, ..Solver::default() };
+    let mut simulation = scaled(material, solver, gravity, StrandScale::default());
     let mut now = Vec::new();
     for _ in 0..240 {
         now = step(&mut simulation, Vec3::ZERO);
     }
-    -f64::from(now[POINTS - 1].y)
+    f64::from(now[POINTS - 1].dot(gravity.normalize()))
 }
 
 #[test]
@@ -101,6 +107,29 @@ fn stiffness_and_radius_follow_their_profiles() {
         let want = sag(|s| taper(s).0, |s| taper(s).1 * gravity);
         println!("{model:?}: tapered {tapered} m, closed form {want} m");
         assert!((tapered / want - 1.0).abs() < 0.03 && (want / plain - 1.0).abs() > 0.1, "{tapered}, {want}");
+    }
+}
+
+/// The long axis is along Y: a flat strand is stiffer along Y and softer along Z than a round one.
+#[test]
+fn flatness_follows_its_profile() {
+    let ei = 3.9e9 * std::f64::consts::FRAC_PI_4 * RADIUS.powi(4);
+    let line = 1310.0 * std::f64::consts::PI * RADIUS * RADIUS;
+    let profile = [1.0f32, 0.3, 0.6];
+    // At most 1: the ratio is 1 at the root, 0.36 in the middle and 0.72 at the tip.
+    let flatness = |s: f64| (1.2 * profile_at(&profile, s / LENGTH)).min(1.0);
+    let base =
+        Material { damping: 0.1, radius: Some(RADIUS as f32), model: Model::Rod, ..Material::default() };
+    // The material's own flatness is at most 1, so that of the strand makes it 1.2 times the profile.
+    let flat =
+        Material { flatness: 0.8, flatness_profile: profile.map(|f| 1.5 * f).to_vec(), ..base.clone() };
+    for (toward, power) in [(Vec3::Y, -1), (Vec3::Z, 1)] {
+        let gravity = 0.5f64;
+        let bends = rests_along(&flat, toward * gravity as f32);
+        let want = sag(|s| ei * flatness(s).powi(power), |_| line * gravity);
+        let round = rests_along(&base, toward * gravity as f32);
+        println!("along {toward}: {bends} m, closed form {want} m, round {round} m");
+        assert!((bends / want - 1.0).abs() < 0.03 && (want / round - 1.0).abs() > 0.15, "{bends}, {want}");
     }
 }
 
@@ -158,7 +187,12 @@ fn drag_and_charge_follow_their_profiles() {
 fn a_profile_of_one_value_multiplies_the_parameter() {
     let base = Material { radius: Some(RADIUS as f32), charge: 1e-10, ..Material::default() };
     let twice = vec![2.0];
-    let cases: [(&str, Material, Material); 6] = [
+    let cases: [(&str, Material, Material); 7] = [
+        (
+            "flatness",
+            Material { flatness_profile: vec![0.5], ..base.clone() },
+            Material { flatness: 0.5, ..base.clone() },
+        ),
         (
             "bend",
             Material { bend_profile: twice.clone(), ..base.clone() },
@@ -195,8 +229,10 @@ fn a_profile_of_one_value_multiplies_the_parameter() {
         let mut simulation = scaled(material, Solver::default(), Vec3::NEG_Y * 9.81, scale);
         (0..30).map(|k| step(&mut simulation, Vec3::Z * (k % 5) as f32)).last().unwrap()
     };
-    let by_groom = thick(StrandScale { radius: 2.0, charge: 3.0, ..StrandScale::default() }, &base);
-    let by_material = Material { radius: Some(2.0 * RADIUS as f32), charge: 3e-10, ..base.clone() };
+    let scale = StrandScale { radius: 2.0, charge: 3.0, flatness: 0.5, ..StrandScale::default() };
+    let by_groom = thick(scale, &base);
+    let by_material =
+        Material { radius: Some(2.0 * RADIUS as f32), charge: 3e-10, flatness: 0.5, ..base.clone() };
     assert_eq!(by_groom, thick(StrandScale::default(), &by_material));
     for model in [Model::Curvature, Model::Rod, Model::Springs] {
         for (name, profiled, multiplied) in &cases {

@@ -93,6 +93,10 @@ pub struct StrandScale {
     pub charge: f32,
     /// Multiplier of the material's radius; above 0. A groom's own radii, which are used without it, are final.
     pub radius: f32,
+    /// Multiplier of the flatness, which is 0.05 to 1; 0 or more.
+    pub flatness: f32,
+    /// Multiplier of the tether, which is at least 1; 0 or more.
+    pub tether: f32,
 }
 
 impl Default for StrandScale {
@@ -105,6 +109,8 @@ impl Default for StrandScale {
             friction: 1.0,
             charge: 1.0,
             radius: 1.0,
+            flatness: 1.0,
+            tether: 1.0,
         }
     }
 }
@@ -126,7 +132,28 @@ impl Groom {
     /// Reverses the points of every strand, with their radii and colors, so that the root is at the other end.
     /// Removes the bindings of the roots.
     pub fn reverse(&mut self) {
+        self.reverse_strands(|_, _| true);
+    }
+
+    /// Reverses each strand that `reversed` selects by its index and points, and returns their number. Removes the
+    /// bindings of the roots if there are any.
+    ///
+    /// ```
+    /// use hairspring::{glam::Vec3, groom::Groom};
+    ///
+    /// let strand = [Vec3::Y * 0.2, Vec3::Y * 0.1, Vec3::ZERO];
+    /// let mut groom = Groom::from_strands([strand], 40e-6);
+    /// // The root is the lower end.
+    /// assert_eq!(groom.reverse_strands(|_, points| points[0].y > points[2].y), 1);
+    /// assert_eq!(groom.points[0], Vec3::ZERO);
+    /// ```
+    pub fn reverse_strands(&mut self, reversed: impl Fn(usize, &[Vec3]) -> bool) -> usize {
+        let mut count = 0;
         for s in 0..self.strand_count() {
+            if !reversed(s, self.strand(s)) {
+                continue;
+            }
+            count += 1;
             let run = self.range(s);
             self.points[run.clone()].reverse();
             if let Some(radii) = self.radii.get_mut(run.clone()) {
@@ -136,7 +163,10 @@ impl Groom {
                 colors.reverse();
             }
         }
-        self.roots.clear();
+        if count > 0 {
+            self.roots.clear();
+        }
+        count
     }
 
     /// Creates a groom from strands, each a list of points from root to tip [m], all with the same radius

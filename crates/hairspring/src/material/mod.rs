@@ -79,6 +79,11 @@ define_settings! {
         ///
         /// The long axis is along the normal of the strand's frame at its root.
         flatness: f32 = 1.0, "fraction", {0.05 to 1}, when BENDS;
+        /// Multiplier of the flatness along the strand, from root to tip: `[1.0, 0.6]` is flatter at the tip. The
+        /// ratio of the axes is 0.05 to 1 anywhere, so a profile above 1 has no effect on a round fiber.
+        flatness_profile: Vec<f32> = vec![1.0], "factors", {
+            check |m| is_positive_profile(&m.flatness_profile) => "1 to 64 numbers above 0"
+        }, when BENDS;
         /// Relaxation time of the fiber's bending. Larger values damp the hair's own vibrations faster.
         ///
         /// With the default, the solver adds almost no damping, and in a head of hair, neighboring hairs absorb a
@@ -110,6 +115,11 @@ define_settings! {
         /// Maximum distance of a point from its root, relative to that at rest (long-range attachment). 0: no
         /// limit. It is not physical, and limits how far hair falls. From 1.01 on it has no effect at rest.
         tether: f32 = 0.0, "factor", {0 or 1 to 10};
+        /// Multiplier of the tether along the strand, from root to tip: `[2.0, 1.0]` gives the upper half more room
+        /// than the tip. The tether is at least 1 anywhere.
+        tether_profile: Vec<f32> = vec![1.0], "factors", {
+            check |m| is_profile(&m.tether_profile) => "1 to 64 numbers, 0 or more"
+        }, when When::Above0("material.tether");
         /// Static charge per length of hair. Charged bodies attract and repel it, and it repels itself. Hair of 35 µm holds at most
         /// 6e-9, where the air at its surface breaks down. From 5e-10 on, a field of 100 kV/m lifts it against
         /// gravity.

@@ -1,26 +1,32 @@
-//! Multipliers along the strands: the profiles of drag, damping and friction at each particle.
+//! Constants that vary along the strands: the profiles of drag, damping, friction and flatness at each particle.
 
 use super::strand_model::StrandModel;
 use crate::{
     material::{Material, profile_at, varies},
     simd::lanes::{LANES, Row},
-    strand::tile::{AlongRows, along},
+    strand::{
+        section::Section,
+        tile::{AlongRows, along},
+    },
 };
 use glam::Vec3;
 
-/// Returns the multipliers at every particle, see `along`; empty if no material has such a profile.
-pub(super) fn multipliers(model: &StrandModel) -> Vec<AlongRows> {
-    let profiled =
-        |m: &Material| [&m.drag_profile, &m.damping_profile, &m.friction_profile].map(|p| varies(p));
-    if model.materials.iter().all(|material| profiled(material) == [false; 3]) {
+/// Returns the constants at every particle, see `along`; empty if no material has such a profile.
+pub(super) fn constants(model: &StrandModel) -> Vec<AlongRows> {
+    let is_varied = |m: &Material| {
+        [&m.drag_profile, &m.damping_profile, &m.friction_profile, &m.flatness_profile]
+            .iter()
+            .any(|profile| varies(profile))
+    };
+    if !model.materials.iter().any(is_varied) {
         return Vec::new();
     }
     let mut rows = vec![[Row([1.0; LANES]); along::ROWS]; model.rest.len()];
     for (place, s) in model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
         let (s, tile) = (*s as usize, model.tiles[place / LANES]);
-        let material = model.material(s);
+        let (material, scale) = (model.material(s), model.groom.scale(s));
         // Friction is at most 1 anywhere.
-        let most = 1.0 / (material.friction * model.groom.scale(s).friction).clamp(f32::MIN_POSITIVE, 1.0);
+        let most = 1.0 / (material.friction * scale.friction).clamp(f32::MIN_POSITIVE, 1.0);
         let stride = tile.model.stride();
         let ends: Vec<f64> = arc_lengths(model.groom.strand(s));
         let whole = ends[ends.len() - 1].max(1e-9);
@@ -34,13 +40,16 @@ pub(super) fn multipliers(model: &StrandModel) -> Vec<AlongRows> {
             rows[along::DRAG].0[place % LANES] = value(&material.drag_profile);
             rows[along::DAMPING].0[place % LANES] = value(&material.damping_profile);
             rows[along::FRICTION].0[place % LANES] = value(&material.friction_profile).min(most);
+            let section = Section::new(material, scale, at);
+            rows[along::TWIST_RATIO].0[place % LANES] = section.twist_ratio;
+            rows[along::FLAT].0[place % LANES] = section.flat;
         }
     }
     rows
 }
 
 /// Returns the length of hair from the root to each point [m].
-fn arc_lengths(points: &[Vec3]) -> Vec<f64> {
+pub(super) fn arc_lengths(points: &[Vec3]) -> Vec<f64> {
     let segments = points.windows(2).map(|w| f64::from(w[0].distance(w[1])));
     std::iter::once(0.0)
         .chain(segments.scan(0.0, |sum, length| {

@@ -1,10 +1,11 @@
 //! Measurements of the authored groom: distances of points from their roots, and depths of segments inside
 //! bodies.
 
-use super::{Simulation, build::simulated_points};
+use super::{Simulation, along::arc_lengths, build::simulated_points};
 use crate::parallel::prelude::*;
 use crate::{
     collide::ColliderPose,
+    material::profile_at,
     simd::lanes::{LANES, Row},
 };
 
@@ -17,18 +18,22 @@ impl Simulation {
         let mut reach = vec![Row([f32::INFINITY; LANES]); self.state.points.len()];
         for (place, s) in self.model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
             let s = *s as usize;
-            let tether = self.model.material(s).tether;
-            if tether == 0.0 {
+            let material = self.model.material(s);
+            if material.tether == 0.0 {
                 continue;
             }
+            let tether = material.tether * self.model.groom.scale(s).tether;
             let tile = self.model.tiles[place / LANES];
             let points = self.model.groom.strand(s);
+            let lengths = arc_lengths(points);
+            let whole = lengths[lengths.len() - 1].max(1e-9);
             let mut before = 0.0f32;
             for (k, p) in points.iter().enumerate() {
                 // Where a coil turns back toward its root, at least the distance that the length of hair
                 // permits.
                 let segment = p.distance(points[k.saturating_sub(1)]);
-                before = (tether * p.distance(points[0])).max(before - segment);
+                let tether = tether * profile_at(&material.tether_profile, lengths[k] / whole) as f32;
+                before = (tether.max(1.0) * p.distance(points[0])).max(before - segment);
                 reach[tile.first as usize + k * tile.model.stride()].0[place % LANES] = before;
             }
         }

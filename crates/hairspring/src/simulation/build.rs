@@ -1,8 +1,14 @@
 //! Builds tiles from a groom: rest shapes and the sag-free start.
 
 use super::{
-    Simulation, SimulationBuilder, along, cpu_solver::CpuSolver, layout::Order, manipulators::Manipulators,
-    strand_model::StrandModel, strand_state::StrandState, teleport::Motion,
+    Simulation, SimulationBuilder,
+    along::{self, arc_lengths},
+    cpu_solver::CpuSolver,
+    layout::Order,
+    manipulators::Manipulators,
+    strand_model::StrandModel,
+    strand_state::StrandState,
+    teleport::Motion,
 };
 use crate::parallel::prelude::*;
 use crate::strand::tile::TileLayout;
@@ -20,6 +26,7 @@ use crate::{
         frame_context::FrameContext,
         model::stretch::stiffening,
         rest_shape::{Fiber, RestShape, Start, rest_shape},
+        section::{Section, is_round},
         tile::{
             Elastic, RestRows, RootRows, SegmentContactRows, StateRows, StrandRows, history, rest, root,
             springs, state, strand,
@@ -43,10 +50,12 @@ impl Simulation {
             .par_iter()
             .map(|s| {
                 let (s, material) = (*s as usize, material(*s as usize));
-                let model = elastic(material, groom.strand(s), &solver);
+                let (points, scale) = (groom.strand(s), groom.scale(s));
+                let model = elastic(material, scale, points, &solver);
                 let radii = radii(material, &groom, s);
-                let fiber = fiber(material, groom.scale(s), model, &solver, &radii);
-                (model, needs_double(model, &simulated_points(model, groom.strand(s)), &fiber, balanced))
+                let sections = sections(material, scale, points);
+                let fiber = fiber(material, scale, model, &solver, (&radii, &sections));
+                (model, needs_double(model, &simulated_points(model, points), &fiber, balanced))
             })
             .collect();
         let coils = elastic.iter().zip(strands).filter(|((model, _), s)| {
@@ -63,7 +72,7 @@ impl Simulation {
                 let strands = || lane.iter().filter(|s| **s != u32::MAX).map(|s| *s as usize);
                 let points = strands().map(|s| groom.range(s).len()).max().unwrap_or(0).max(3);
                 let points = ((points - 1) * model.stride() + 1) as u32;
-                let flat = model == Elastic::Rod && strands().any(|s| material(s).flatness != 1.0);
+                let flat = model == Elastic::Rod && strands().any(|s| !is_round(material(s), groom.scale(s)));
                 let place = TileLayout { first, points, model, flat, double };
                 first += points;
                 place
@@ -114,7 +123,7 @@ impl Simulation {
         simulation.fill(colliders);
         let rest_penetration = simulation.authored_depths(colliders);
         let tethers = simulation.tethers();
-        let along = along::multipliers(&simulation.model);
+        let along = along::constants(&simulation.model);
         let springs = simulation.model.tiles.iter().any(|tile| tile.model == Elastic::Springs);
         let rows = |at: usize| simulation.state.points.iter().map(|rows| rows[at]).collect();
         let tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
@@ -199,9 +208,9 @@ impl Simulation {
                     let scale = groom.scale(s);
                     let points = simulated_points(model, groom.strand(s));
                     let radii = radii(material, groom, s);
-                    let section = Section::new(material);
-                    let fiber =
-                        Fiber { double: tile.double, ..fiber(material, scale, model, &solver, &radii) };
+                    let sections = sections(material, scale, groom.strand(s));
+                    let fiber = fiber(material, scale, model, &solver, (&radii, &sections));
+                    let fiber = Fiber { double: tile.double, ..fiber };
                     let shape = shape(model, &points, &fiber, gravity);
                     start = start + shape.start;
                     into.write_strand(&points, &shape, anchor, colliders);
@@ -210,8 +219,8 @@ impl Simulation {
                     write_surface(rows, lane, material, scale);
                     rows[strand::REYNOLDS].0[lane] = 2.0 * radius / AIR_KINEMATIC_VISCOSITY;
                     rows[strand::DAMPING].0[lane] = material.damping * scale.damping;
-                    rows[strand::TWIST_RATIO].0[lane] = section.twist_ratio;
-                    rows[strand::FLAT].0[lane] = section.flat;
+                    rows[strand::TWIST_RATIO].0[lane] = sections[0].twist_ratio;
+                    rows[strand::FLAT].0[lane] = sections[0].flat;
                     let points = groom.range(s).len();
                     rows[strand::POINTS].0[lane] = points as f32;
                     rows[strand::STIFFENING].0[lane] = stiffening(points);
@@ -262,7 +271,7 @@ pub(super) fn simulated_points(model: Elastic, points: &[Vec3]) -> Cow<'_, [Vec3
 }
 
 /// Selects the elastic model of a strand.
-fn elastic(material: &Material, points: &[Vec3], solver: &Solver) -> Elastic {
+fn elastic(material: &Material, scale: StrandScale, points: &[Vec3], solver: &Solver) -> Elastic {
     let coiled = turning(points) > COILED;
     // Only a strand that starts straight and free of load needs no rest turn.
     let straight = !solver.sag_free && is_straight(points);
@@ -274,7 +283,7 @@ fn elastic(material: &Material, points: &[Vec3], solver: &Solver) -> Elastic {
         Model::Curvature if coiled => Elastic::Rod,
         Model::Curvature => Elastic::Curvature,
         Model::Rod => Elastic::Rod,
-        Model::Auto if straight && material.flatness == 1.0 => Elastic::Straight,
+        Model::Auto if straight && is_round(material, scale) => Elastic::Straight,
         Model::Auto => Elastic::Rod,
     }
 }
@@ -307,22 +316,28 @@ fn radii(material: &Material, groom: &Groom, s: usize) -> Vec<f32> {
     material.radii(groom.strand(s), groom.scale(s)).unwrap_or_else(|| groom.radii[groom.range(s)].to_vec())
 }
 
-/// The fiber of a strand that is solved in single precision.
+/// Cross section at each of the strand's `points`.
+fn sections(material: &Material, scale: StrandScale, points: &[Vec3]) -> Vec<Section> {
+    let lengths = arc_lengths(points);
+    let whole = lengths[lengths.len() - 1].max(1e-9);
+    lengths.iter().map(|length| Section::new(material, scale, length / whole)).collect()
+}
+
+/// The fiber of a strand that is solved in single precision, from its radii and sections.
 fn fiber<'a>(
     material: &'a Material,
     scale: StrandScale,
     model: Elastic,
     solver: &Solver,
-    radii: &'a [f32],
+    (radii, sections): (&'a [f32], &'a [Section]),
 ) -> Fiber<'a> {
-    let section = Section::new(material);
     Fiber {
         radii,
         density: material.density as f64,
         mass_profile: &material.mass_profile,
-        young: (material.young * material.bend * scale.bend * section.bend) as f64,
+        young: (material.young * material.bend * scale.bend) as f64,
         bend_profile: &material.bend_profile,
-        flat: section.flat as f64,
+        sections,
         substep: super::step::substep_length(solver),
         // The matrix of the springs model includes damping, but accounting for it here would cost more
         // stiffness than rounding costs accuracy.
@@ -333,8 +348,7 @@ fn fiber<'a>(
             (material.damping * scale.damping * most) as f64
         },
         double: false,
-        twist_ratio: (!matches!(model, Elastic::Straight | Elastic::Curvature))
-            .then_some(section.twist_ratio as f64),
+        twists: !matches!(model, Elastic::Straight | Elastic::Curvature),
     }
 }
 
@@ -351,34 +365,13 @@ fn shape(model: Elastic, points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> Rest
 fn needs_double(model: Elastic, points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> bool {
     // The matrix of a flat fiber contains the stiffness of its stiff direction, I_max/I_min times that of the
     // other.
-    let stiff = Fiber { young: fiber.young * (1.0 + fiber.flat), ..*fiber };
+    let sections: Vec<Section> = fiber.sections.iter().map(|section| section.stiff()).collect();
+    let stiff = Fiber { sections: &sections, ..*fiber };
     // The build without SIMD has single precision only. So has the springs model, which is for comparison
     // only.
     cfg!(not(one_lane))
         && model != Elastic::Springs
         && shape(model, points, &stiff, gravity).start.held_back > 0
-}
-
-/// Effect of a fiber's cross section on its stiffness. An ellipse with semi-axes a ≥ b and b/a = f has, for
-/// the same area as the circle of radius r: I_min = πr⁴f/4, I_max = πr⁴/4f, J = πr⁴ / (f + 1/f).
-struct Section {
-    /// I_min over that of the circle.
-    bend: f32,
-    /// I_max/I_min − 1.
-    flat: f32,
-    /// GJ/EI_min. The style's multiplier scales both.
-    twist_ratio: f32,
-}
-
-impl Section {
-    fn new(material: &Material) -> Self {
-        let f = material.flatness;
-        Self {
-            bend: f,
-            flat: 1.0 / (f * f) - 1.0,
-            twist_ratio: 4.0 * material.shear / (material.young * (1.0 + f * f)),
-        }
-    }
 }
 
 /// One lane of a tile, for writing.

@@ -176,11 +176,11 @@ fn add_joints(strand: StrandRef, energy: &mut Energy) {
     let e = |j: usize| strand.segment(j);
     let length = |j: usize| f64::from(strand.rest_length(j));
     let mut m0 = strand.root_normal();
-    let (ratio, flat) = (f64::from(strand.twist_ratio()), f64::from(strand.flatness()));
     let mut u0 = e(0).normalize_or_zero();
     for j in 1..strand.point_count() - 1 {
         let u1 = e(j).normalize_or_zero();
         let stiffness = f64::from(strand.bend(j));
+        let (ratio, flat) = (f64::from(strand.twist_ratio(j)), f64::from(strand.flatness(j)));
         let local = strand.rest_turn(j);
         let d = m0 * local.x + u0.cross(m0) * local.y + u0 * local.z;
         let r = e(j) / length(j) - e(j - 1) / length(j - 1) - d;

@@ -125,9 +125,7 @@ impl<'a> StrandRef<'a> {
 
     /// Relaxation time of bending at particle `i` [s].
     pub fn damping(self, i: usize) -> f32 {
-        let share =
-            self.model.along.get(self.at(i)).map_or(1.0, |rows| rows[along::DAMPING].0[self.lane % LANES]);
-        self.constant(strand::DAMPING) * share
+        self.constant(strand::DAMPING) * self.along(i, along::DAMPING).unwrap_or(1.0)
     }
 
     /// Reynolds number over the speed of the air across the fiber, d/ν [s/m].
@@ -145,14 +143,19 @@ impl<'a> StrandRef<'a> {
         self.constant(strand::STIFFENING)
     }
 
-    /// Twisting over bending stiffness, GJ/EI [1].
-    pub fn twist_ratio(self) -> f32 {
-        self.constant(strand::TWIST_RATIO)
+    /// Twisting over bending stiffness at particle `i`, GJ/EI [1].
+    pub fn twist_ratio(self, i: usize) -> f32 {
+        self.along(i, along::TWIST_RATIO).unwrap_or(self.constant(strand::TWIST_RATIO))
     }
 
-    /// Relative additional bending stiffness in the plane of the frame's normal, ΔB/B [1].
-    pub fn flatness(self) -> f32 {
-        self.constant(strand::FLAT)
+    /// Relative additional bending stiffness at particle `i` in the plane of the frame's normal, ΔB/B [1].
+    pub fn flatness(self, i: usize) -> f32 {
+        self.along(i, along::FLAT).unwrap_or(self.constant(strand::FLAT))
+    }
+
+    /// A constant that varies along the strand, at particle `i`; `None` if no material has such a profile.
+    fn along(self, i: usize, row: usize) -> Option<f32> {
+        Some(self.model.along.get(self.at(i))?[row].0[self.lane % LANES])
     }
 
     /// Vector from the particle before to particle `i` [m].

@@ -1,6 +1,6 @@
 //! Changes settings of a running simulation in place, where rest shapes do not depend on them.
 
-use super::{Simulation, build::write_surface};
+use super::{Simulation, along, build::write_surface};
 use crate::{
     material::Material,
     settings::{OutOfRange, Solver, Validate},
@@ -18,7 +18,7 @@ impl Simulation {
     ///
     /// | settings | in place |
     /// | --- | --- |
-    /// | material | `drag`, `friction`, `friction_kinetic`, `charge`, `charge_profile`, `global_shape`, `tether` |
+    /// | material | `drag`, `friction`, `friction_kinetic`, `charge`, `charge_profile`, `global_shape`, `tether`, `tether_profile` |
     /// | gravity | without `solver.sag_free` |
     /// | solver | `contact`, `segment_contacts`, `projection_iterations`, `quality`, `inertia`, `teleport_distance`, `global_shape` |
     ///
@@ -53,8 +53,10 @@ impl Simulation {
                 let scale = model.groom.scale(s);
                 write_surface(&mut model.strand[lane / LANES], lane % LANES, material, scale);
             }
-            let tethers = self.tethers();
-            Arc::make_mut(&mut self.model).tethers = tethers;
+            // Friction is at most 1 with its profile, too.
+            let (tethers, along) = (self.tethers(), along::constants(&self.model));
+            let model = Arc::make_mut(&mut self.model);
+            (model.tethers, model.along) = (tethers, along);
         }
         if self.model.gravity != gravity {
             Arc::make_mut(&mut self.model).gravity = gravity;
@@ -71,9 +73,18 @@ impl Simulation {
 /// Whether two materials give the same rest shapes.
 fn same_rest_shapes(old: &Material, new: &Material) -> bool {
     let Material { drag, friction, friction_kinetic, charge, tether, .. } = *new;
-    let (charge_profile, global_shape) = (new.charge_profile.clone(), new.global_shape.clone());
-    Material { drag, friction, friction_kinetic, charge, charge_profile, global_shape, tether, ..old.clone() }
-        == *new
+    let kept = Material {
+        drag,
+        friction,
+        friction_kinetic,
+        charge,
+        tether,
+        charge_profile: new.charge_profile.clone(),
+        global_shape: new.global_shape.clone(),
+        tether_profile: new.tether_profile.clone(),
+        ..old.clone()
+    };
+    kept == *new
 }
 
 /// Whether two solvers give the same rest shapes and the same arrays of state.

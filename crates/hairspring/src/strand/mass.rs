@@ -82,6 +82,7 @@ mod tests {
     use super::masses;
     use crate::strand::{
         rest_shape::{Fiber, rest_shape},
+        section::Section,
         truss::{particles, truss},
     };
     use glam::{DVec3, Vec3};
@@ -95,8 +96,8 @@ mod tests {
             mass_profile,
             young: 3.9e9,
             bend_profile: &[1.0],
-            flat: 0.0,
-            twist_ratio: Some(0.46),
+            sections: &[Section { bend: 1.0, flat: 0.0, twist_ratio: 0.46 }; 16],
+            twists: true,
             substep: 1.0 / 240.0,
             damping: 0.0,
             double: false,

@@ -24,6 +24,7 @@ pub(crate) mod project;
 pub(crate) mod rest_shape;
 pub(crate) mod root;
 pub(crate) mod scratch;
+pub(crate) mod section;
 pub(crate) mod segment;
 pub(crate) mod segment_contact;
 pub(crate) mod substitute;

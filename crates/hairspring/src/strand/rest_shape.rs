@@ -29,6 +29,7 @@ use super::{
         bend::{FOLDED, transport_normal},
         rod::{FOLDING, curved_joint},
     },
+    section::Section,
 };
 use crate::material::profile_at;
 use glam::{DVec3, Vec3};
@@ -65,14 +66,14 @@ pub struct Fiber<'a> {
     /// Distribution of the mass along the strand: weights at equal spacing from root to tip. Empty for a
     /// uniform distribution.
     pub mass_profile: &'a [f32],
-    /// Young's modulus times the style's multiplier, at the root [Pa].
+    /// Young's modulus times the style's multiplier, at the root of a round fiber [Pa].
     pub young: f64,
     /// Multiplier of Young's modulus along the strand, from root to tip.
     pub bend_profile: &'a [f32],
-    /// Relative additional bending stiffness in the plane of the frame's normal, ΔB/B.
-    pub flat: f64,
-    /// Twisting over bending stiffness, GJ/EI; `None` for a model without twist.
-    pub twist_ratio: Option<f64>,
+    /// Cross section at each point.
+    pub sections: &'a [Section],
+    /// Whether the model has twist.
+    pub twists: bool,
     /// Length of a substep [s].
     pub substep: f64,
     /// Largest relaxation time of bending along the strand [s].
@@ -95,6 +96,16 @@ const STIFFEST_SINGLE: f64 = 4e6;
 const STIFFEST_DOUBLE: f64 = STIFFEST_SINGLE * (1u64 << 29) as f64;
 
 impl Fiber<'_> {
+    /// Relative additional bending stiffness of joint `j` in the plane of the frame's normal, ΔB/B [1].
+    pub fn flat(&self, j: usize) -> f64 {
+        self.sections[j].flat.into()
+    }
+
+    /// Twisting over bending stiffness of joint `j`, GJ/EI [1]; `None` for a model without twist.
+    pub fn twist_ratio(&self, j: usize) -> Option<f64> {
+        self.twists.then(|| self.sections[j].twist_ratio.into())
+    }
+
     /// Returns the largest stiffness [N/m] of a spring on a point of this mass [kg] that the matrix can
     /// represent together with its damping.
     pub fn stiffest(&self, mass: f64) -> f64 {
@@ -192,7 +203,7 @@ pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
         along += lengths[j - 1];
         let r = fiber.radii[j] as f64;
         let young = fiber.young * profile_at(fiber.bend_profile, along / total);
-        let ei = young * std::f64::consts::FRAC_PI_4 * r.powi(4);
+        let ei = young * f64::from(fiber.sections[j].bend) * std::f64::consts::FRAC_PI_4 * r.powi(4);
         // The driven first segment is rigid. Its compliance is added to the first joint, so that the strand
         // bends like one clamped at its root.
         let mean = if j == 1 { lengths[0] + 0.5 * lengths[1] } else { 0.5 * (lengths[j - 1] + lengths[j]) };
@@ -248,7 +259,7 @@ pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
             // unstable.
             let weight_per_length = g * rest[i].mass / mean;
             let held = (moment.length() / LARGEST_CURVATURE).powf(1.5) / weight_per_length.sqrt() / mean;
-            let twisting = fiber.twist_ratio.map_or(0.0, |ratio| {
+            let twisting = fiber.twist_ratio(i).map_or(0.0, |ratio| {
                 let along = t[i - 1].dot(t[i]) - 1.0;
                 torque.abs() / (ratio * curved_joint(along) * fade(i).powi(2) * LARGEST_TWIST)
             });
@@ -260,13 +271,14 @@ pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
             }
             start.held_back += hold_back(i, &mut rest[i]);
             let frame = rest[i - 1].normal;
-            let stiff = frame * (frame.dot(moment) * fiber.flat / (1.0 + fiber.flat));
+            let flat = fiber.flat(i);
+            let stiff = frame * (frame.dot(moment) * flat / (1.0 + flat));
             let kappa = t[i] - t[i - 1];
             // A joint without stiffness has no moment: only a strand that hangs straight down may have one.
             let bend = rest[i].bend.max(f64::MIN_POSITIVE);
             rest[i].turn = kappa - (moment - stiff) / bend;
             below = moment * (1.0 + t[i - 1].dot(kappa)) - kappa * t[i - 1].dot(moment);
-            if let Some(ratio) = fiber.twist_ratio {
+            if let Some(ratio) = fiber.twist_ratio(i) {
                 let twisting = ratio * bend * curved_joint(rest[i].turn.dot(t[i - 1]));
                 rest[i].twist = -torque / (twisting * fade(i).powi(2));
                 torque_after = binormal(i) * torque;

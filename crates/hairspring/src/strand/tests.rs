@@ -392,8 +392,11 @@ pub fn rows(s: &reference::Strand) -> ((RootRows, StrandRows), Vec<RestRows>, Ve
 fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, Vec<DVec3>) {
     let n = s.x.len();
     let ((root_rows, strand_rows), rest_rows, mut state_rows, normals) = rows(s);
-    let along_rows: Vec<AlongRows> =
-        s.along.iter().map(|at| [at[0], at[1], 1.0].map(|x| Row([x as f32; LANES]))).collect();
+    let along_rows: Vec<AlongRows> = s
+        .along
+        .iter()
+        .map(|at| [at[0], at[1], 1.0, reference::TWIST_RATIO, 0.0].map(|x| Row([x as f32; LANES])))
+        .collect();
     let mut memory = Memory::default();
     let mut scratch = memory.scratch(n);
     let layout = TileLayout { first: 0, points: rest_rows.len() as u32, model, flat: false, double };

@@ -50,16 +50,20 @@ pub mod rest {
     pub const ROWS: usize = 9;
 }
 
-/// Rows of the multipliers of a strand's constants at each particle [1].
+/// Rows of the constants that vary along a strand, at each particle.
 pub mod along {
-    /// Of `strand::DRAG`.
+    /// Multiplier of `strand::DRAG` [1].
     pub const DRAG: usize = 0;
-    /// Of `strand::DAMPING`.
+    /// Multiplier of `strand::DAMPING` [1].
     pub const DAMPING: usize = 1;
-    /// Of `strand::FRICTION`.
+    /// Multiplier of `strand::FRICTION` [1].
     pub const FRICTION: usize = 2;
+    /// Replaces `strand::TWIST_RATIO` [1].
+    pub const TWIST_RATIO: usize = 3;
+    /// Replaces `strand::FLAT` [1].
+    pub const FLAT: usize = 4;
     /// Rows a point.
-    pub const ROWS: usize = 3;
+    pub const ROWS: usize = 5;
 }
 
 /// Rows of the motion of a strand's root in a frame.
@@ -214,7 +218,7 @@ pub type StrandRows = [Row; strand::ROWS];
 pub type RestRows = [Row; rest::ROWS];
 /// The state of one point of eight strands.
 pub type StateRows = [Row; state::ROWS];
-/// The multipliers at one particle of eight strands.
+/// The constants at one particle of eight strands.
 pub type AlongRows = [Row; along::ROWS];
 
 /// The contact of the segment that ends at one point, for eight strands.
@@ -240,7 +244,7 @@ tile_arrays! {
         /// Rest shapes, with the points of the longest strand; as long as `state`.
         rest: shared RestRows,
         state: unique StateRows,
-        /// Multipliers of the strands' constants, see `along`; not in use if no material has such a profile.
+        /// Constants that vary along the strands, see `along`; not in use if no material has such a profile.
         along: shared AlongRows,
         /// Only for the second-order integrator.
         history: unique HistoryRows,

@@ -125,7 +125,7 @@ pub fn truss(particles: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
         let lengths = [strand.points[j - 1].length, strand.points[j].length];
         let shorter = lengths[0].min(lengths[1]);
         let stiffest = fiber.stiffest(strand.points[j].mass);
-        let hardest = 1.0 + fiber.flat;
+        let hardest = 1.0 + fiber.flat(j);
         let (before, at) = (&strand.points[j - 1], &strand.points[j]);
         let t = [2 * j, 2 * j + 2].map(|k| (x[k] - x[k - 2]).normalize_or_zero());
         let natural = before.normal * at.turn.x + t[0].cross(before.normal) * at.turn.y + t[0] * at.turn.z;
@@ -138,7 +138,7 @@ pub fn truss(particles: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
         // A flat fiber is stiffer toward its frame's normal, the side of every other extra particle.
         let harder = [j - 1, j].map(|segment| if segment % 2 == 0 { hardest } else { 1.0 });
         let easier = 0.25 * (1.0 / harder[0] + 1.0 / harder[1]);
-        let twisting = fiber.twist_ratio.map_or(0.0, |ratio| ASIDE * ASIDE / ratio - easier);
+        let twisting = fiber.twist_ratio(j).map_or(0.0, |ratio| ASIDE * ASIDE / ratio - easier);
         let (p0, e0, p1, e1, p2) = (2 * j - 2, 2 * j - 1, 2 * j, 2 * j + 1, 2 * j + 2);
         let straight = |from: usize, to: usize| ASIDE * lengths[0] * lengths[1] / x[from].distance(x[to]);
         // In the strand's actual shape.

@@ -40,12 +40,13 @@ fn later(simulation: &mut Simulation) -> (Vec<Vec3>, Vec<Vec3>) {
 fn with_the_same_bits_as_a_new_simulation() {
     let (material, solver) = (base, Solver::default);
     let global_shape = GlobalShape { pull: 4.0, ..GlobalShape::default() };
-    let changes: [(&str, Material, Solver); 12] = [
+    let changes: [(&str, Material, Solver); 13] = [
         ("drag", Material { drag: 4.0, ..material() }, solver()),
         ("friction", Material { friction: 0.9, ..material() }, solver()),
         ("friction_kinetic", Material { friction_kinetic: 0.2, ..material() }, solver()),
         ("global_shape of the material", Material { global_shape, ..material() }, solver()),
         ("tether", Material { tether: 1.05, ..material() }, solver()),
+        ("tether_profile", Material { tether_profile: vec![1.1, 1.02], ..material() }, solver()),
         ("no tether", Material { tether: 0.0, ..material() }, solver()),
         ("contact", material(), Solver { contact: Response::Projection, ..solver() }),
         ("segment_contacts", material(), Solver { segment_contacts: false, ..solver() }),
@@ -64,6 +65,26 @@ fn with_the_same_bits_as_a_new_simulation() {
         let gravity = Vec3::new(0.0, -9.81, 0.0);
         assert_eq!(in_place.update_settings(&[material], solver, gravity), Ok(true), "{name}");
         assert_eq!(later(&mut in_place), expected, "{name}");
+    }
+}
+
+/// The coefficient is at most 1 along the strand: the new friction, not the old one, determines where.
+#[test]
+fn friction_changes_with_its_profile() {
+    let rough = |friction| Material { friction, friction_profile: vec![1.5, 5.0], ..Material::default() };
+    for [old, new] in [[0.2, 0.6], [0.9, 0.1]] {
+        let run = |material: Material, then: Option<Material>| {
+            let mut simulation = simulation(STRANDS, material, Solver::default());
+            (0..20).for_each(|frame| shake(&mut simulation, frame, &ball()));
+            if let Some(then) = then {
+                let gravity = Vec3::new(0.0, -9.81, 0.0);
+                assert_eq!(simulation.update_settings(&[then], Solver::default(), gravity), Ok(true));
+            }
+            simulation
+        };
+        let mut rebuilt = simulation(STRANDS, rough(new), Solver::default());
+        rebuilt.take_over(&run(rough(old), None));
+        assert_eq!(later(&mut run(rough(old), Some(rough(new)))), later(&mut rebuilt), "{old} to {new}");
     }
 }
 

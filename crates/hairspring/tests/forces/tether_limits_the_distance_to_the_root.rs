@@ -8,7 +8,7 @@
 
 use glam::Vec3;
 use hairspring::{
-    groom::Groom,
+    groom::{Groom, StrandScale},
     material::{Material, Model},
     settings::Solver,
     simulation::Simulation,
@@ -43,10 +43,15 @@ struct Fall {
 }
 
 fn fall(model: Model, tether: f32, g: f32, seconds: usize) -> Fall {
-    let groom = coils();
-    let roots = roots(&groom, REST);
+    let material = Material { model, tether, ..Material::default() };
+    fall_of(&coils(), &material, g, seconds)
+}
+
+fn fall_of(groom: &Arc<Groom>, material: &Material, g: f32, seconds: usize) -> Fall {
+    let model = material.model;
+    let roots = roots(groom, REST);
     let mut simulation = Simulation::builder(groom.clone())
-        .materials(&[Material { model, tether, ..Material::default() }])
+        .materials(std::slice::from_ref(material))
         .solver(Solver { sag_free: g == 1.0, ..Solver::default() })
         .gravity(Vec3::NEG_Y * 9.81 * g)
         .build()
@@ -86,6 +91,32 @@ fn heavy_coils_fall_to_the_limit() {
             );
         }
     }
+}
+
+/// Limits of each point, relative to the largest rest distance of it and those before it.
+#[test]
+fn the_limit_follows_its_profile_and_the_map() {
+    let base = Material { tether: 1.2, ..Material::default() };
+    let plain = fall_of(&coils(), &base, 20.0, 2);
+    // A profile and a multiplier of the strand that give 1.2, and one below the least, which is 1.
+    let mut half = Arc::unwrap_or_clone(coils());
+    half.scales = vec![StrandScale { tether: 0.5, ..StrandScale::default() }; 9];
+    let half = Arc::new(half);
+    let doubled = Material { tether_profile: vec![2.0], ..base.clone() };
+    assert_eq!(fall_of(&half, &doubled, 20.0, 2).points, plain.points);
+    let least = Material { tether: 1.0, ..base.clone() };
+    assert_eq!(fall_of(&half, &base, 20.0, 2).points, fall_of(&coils(), &least, 20.0, 2).points);
+    // The tip may go farther than the middle.
+    let groom = coils();
+    let loose_tip = Material { tether_profile: vec![1.0, 1.0, 1.5], ..base.clone() };
+    let fell = fall_of(&groom, &loose_tip, 20.0, 2);
+    let reach = |i: usize| {
+        let farthest = (1..=i).map(|k| groom.points[k].distance(groom.points[0])).fold(0.0, f32::max);
+        fell.points[i].distance(fell.points[0]) / farthest
+    };
+    let [middle, tip] = [POINTS / 2, POINTS - 1].map(reach);
+    println!("{middle} in the middle and {tip} at the tip, where 1.2 and 1.8 are permitted");
+    assert!(middle < 1.2 * 1.0011 && tip < 1.8 * 1.0011 && tip > 1.25, "{middle}, {tip}");
 }
 
 #[test]

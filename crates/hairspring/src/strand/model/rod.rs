@@ -50,7 +50,7 @@ use crate::{
         root::Root,
         scratch::{Memory, Scratch},
         system::System,
-        tile::{Tile, rest, state, strand},
+        tile::{Tile, along, rest, state, strand},
     },
 };
 use fearless_simd::Level;
@@ -116,6 +116,10 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
     fn add(&mut self, simd: S, at: &At<S>, _: &Scratch, tile: &mut Tile, band: &mut Band<S, 4, 11>) {
         let one = F::<S>::splat(simd, 1.0);
         let own = &tile.rest[at.i + 1];
+        let (twist_ratio, flat) = match tile.along.get(at.i + 1) {
+            Some(rows) => (load(simd, &rows[along::TWIST_RATIO]), load(simd, &rows[along::FLAT])),
+            None => (self.twist_ratio, self.flat),
+        };
         let [u0, u1] = at.u;
         let [alpha, beta] = at.inverse_length;
         let m0 = self.normal;
@@ -164,7 +168,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
             ((u1 - u0 * cosine) * opening + direction) * alpha,
             ((u0 - u1 * cosine) * opening + direction) * beta,
         ];
-        let twisting = stiffness * self.twist_ratio * curved(turn.z);
+        let twisting = stiffness * twist_ratio * curved(turn.z);
         let k = twisting * at.damped;
         let [d0, d1] = at.drift;
         let drift = gradient[0].dot(d0) + gradient[1].dot(d1);
@@ -187,17 +191,19 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
             // m·κ minus its rest value; κ = e₁/L₁ − û₀.
             let kappa = at.e[1] * beta - u0;
             let a1 = u0.dot(kappa) + 1.0;
-            let stiffer = stiffness * self.flat;
-            let along = [-(alpha * a1), beta];
+            let stiffer = stiffness * flat;
+            let gradient = [-(alpha * a1), beta];
             let [d0, d1] = at.drift;
-            let drift = m0.dot(d0 * along[0] + d1 * along[1]);
+            let drift = m0.dot(d0 * gradient[0] + d1 * gradient[1]);
             let k = stiffer * at.damped;
             let force = k.mul_add(drift, stiffer * (m0.dot(kappa) - turn.x));
-            joint.add_rank_one(m0, along, force, k);
+            joint.add_rank_one(m0, gradient, force, k);
             let turned = -(m0.dot(u0.cross(kappa)));
             let column = m0 * (k * turned);
-            angle.segments =
-                [column.mul_add(along[0], angle.segments[0]), column.mul_add(along[1], angle.segments[1])];
+            angle.segments = [
+                column.mul_add(gradient[0], angle.segments[0]),
+                column.mul_add(gradient[1], angle.segments[1]),
+            ];
             angle.own += k * turned * turned;
             angle.moment -= force * turned;
         }
