@@ -22,8 +22,8 @@ pub struct Crossing {
     pub normal: Vec3,
 }
 
-/// How far a line may pass outside of a triangle and still cross it, as a fraction of the triangle [1]. It
-/// closes the gaps that rounding leaves between triangles.
+/// How far a line may pass outside of a triangle and still cross it, as a fraction of the triangle [1], and how far
+/// before its plane it may end, as a fraction of the line. It closes the gaps that rounding leaves between triangles.
 const RIM: f32 = 1e-5;
 
 impl ThinShell {
@@ -42,6 +42,9 @@ impl ThinShell {
         let mut first: Option<Crossing> = None;
         for k in 0..samples as usize {
             for &t in self.listed_at(from + way * ((k as f32 + 0.5) / samples)) {
+                if self.misses_plane(t as usize, [from, to], RIM * length) {
+                    continue;
+                }
                 let before = first.map_or(1.0, |first| first.fraction);
                 let crossing = cross(from, way, self.triangles()[t as usize]);
                 first = crossing.filter(|crossing| crossing.fraction < before).or(first);

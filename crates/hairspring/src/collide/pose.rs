@@ -123,14 +123,10 @@ impl ColliderPose {
                     may
                 }
             }
-            ColliderShape::Sheet(sheet) => self.between(
-                simd,
-                (p, e),
-                (size, sheet.cell()),
-                may,
-                #[inline(always)]
-                |at| sheet.may_be_inside(simd, at),
-            ),
+            ColliderShape::Sheet(sheet) => {
+                let e = transform(simd, &self.end.0.transpose(), e);
+                sheet.segments_may_be_inside(simd, (self.local(simd, p) - e, e), may)
+            }
             _ => may,
         }
     }

@@ -15,7 +15,7 @@
 use super::lattice::Lattice;
 use crate::{
     body::nearest_on_triangle,
-    simd::lanes::{F, LANES, Mask, Row, Simd, V3, load},
+    simd::lanes::{F, LANES, Mask, Row, Simd, V3, load, store},
 };
 use glam::{UVec3, Vec3};
 use std::sync::Arc;
@@ -24,8 +24,14 @@ use std::sync::Arc;
 /// is still measured.
 pub(super) const REACH: f32 = 2.0;
 
+/// Factor on a distance from a triangle that is compared with one from its plane: 1 and a margin for rounding.
+const NEAR_PLANE: f32 = 1.01;
+
 /// Maximum number of cells along the longest side.
 const CELLS: f32 = 128.0;
+
+/// Maximum number of samples of a segment. A longer one counts as near the shell.
+const MAX_SAMPLES: u32 = 64;
 
 /// Maximum number of nodes of the lattice.
 const MAX_NODES: usize = 1 << 22;
@@ -47,6 +53,8 @@ pub struct ThinShell {
     /// Half-thickness: distance that it extends from its triangles on both sides [m].
     thickness: f32,
     corners: Vec<[Vec3; 3]>,
+    /// Unit normal of each triangle; 0 for a triangle without area.
+    normals: Vec<Vec3>,
     /// Displacement of the corners during the last interval [m]; empty: the shell is rigid.
     moved: Vec<[Vec3; 3]>,
     lattice: Lattice,
@@ -68,11 +76,6 @@ impl ThinShell {
     /// Returns the distance that it extends from its triangles on each side [m].
     pub fn thickness(&self) -> f32 {
         self.thickness
-    }
-
-    /// Returns the distance between adjacent nodes of its lattice [m].
-    pub(super) fn cell(&self) -> f32 {
-        self.lattice.cell
     }
 
     /// Creates the shell of a mesh. It extends by `thickness` [m], above 0, to both sides of the triangles.
@@ -110,6 +113,8 @@ impl ThinShell {
                 self.moved.extend(before.map(|b| t.map(|i| positions[i as usize] - b[i as usize])));
             }
         }
+        self.normals.clear();
+        self.normals.extend(self.corners.iter().map(|[a, b, c]| (b - a).cross(c - a).normalize_or_zero()));
         let reach = REACH * thickness;
         let all = || self.corners.iter().flatten();
         let lo = all().fold(Vec3::splat(f32::MAX), |lo, p| lo.min(*p));
@@ -152,7 +157,7 @@ impl ThinShell {
         let last = (lattice.size - 2).as_ivec3();
         let lo = (a.min(b).min(c) - reach).floor().as_ivec3().max(glam::IVec3::ZERO);
         let hi = (a.max(b).max(c) + reach).floor().as_ivec3().min(last);
-        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let normal = self.normals[t];
         // The distance of the plane from the cell's center is compared with the reach plus the cell's extent
         // along the normal.
         let far = reach + 0.5 * normal.abs().element_sum() + 1e-3;
@@ -197,6 +202,10 @@ impl ThinShell {
         let mut least = (REACH * self.thickness).powi(2);
         for &t in self.listed(cell) {
             let [a, b, c] = self.corners[t as usize];
+            let off_plane = self.normals[t as usize].dot(p - a);
+            if off_plane * off_plane > least * (NEAR_PLANE * NEAR_PLANE) {
+                continue;
+            }
             let at = nearest_on_triangle(p, [a, b, c]);
             let way = p - (a * at.x + b * at.y + c * at.z);
             if way.length_squared() < least {
@@ -241,12 +250,63 @@ impl ThinShell {
         }
     }
 
-    /// Returns which of eight points are in a cell that has triangles within reach. The others are outside.
+    /// Returns which of eight points may be inside. The others are not.
     #[inline(always)]
     pub(super) fn may_be_inside<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let (_, cells, _) = self.lattice.locate_lanes(simd, p);
-        let may = Row(cells.map(|cell| if self.first[cell] < self.first[cell + 1] { 1.0 } else { 0.0 }));
-        load(simd, &may).simd_gt(0.0)
+        let p = points(p);
+        let may = |lane: usize| self.may_touch(cells[lane], [p[lane]; 2]);
+        load(simd, &Row(std::array::from_fn(|lane| f32::from(may(lane))))).simd_gt(0.0)
+    }
+
+    /// Returns which of the segments in `may`, from `a` to `a + e`, may have a place inside. The others have none.
+    #[inline(always)]
+    pub(super) fn segments_may_be_inside<S: Simd>(
+        &self,
+        simd: S,
+        (a, e): (V3<S>, V3<S>),
+        may: Mask<S>,
+    ) -> Mask<S> {
+        // A cell lists all triangles within reach of it. A place inside is within the thickness of one, and no
+        // farther from a sample than half of their spacing.
+        let spacing = 2.0 * (REACH - 1.0) * self.thickness;
+        let length = may.select(e.length_and_unit().0, F::splat(simd, 0.0));
+        let mut samples = 1;
+        while length.simd_gt(samples as f32 * spacing).any_true() {
+            samples += 1;
+            if samples > MAX_SAMPLES {
+                return may;
+            }
+        }
+        let (zero, one) = (F::splat(simd, 0.0), F::splat(simd, 1.0));
+        let (mut left, mut found) = (Row::default(), Row::default());
+        store(may.select(one, zero), &mut left);
+        let ends = [points(a), points(a + e)];
+        for k in 0..samples {
+            let at = F::splat(simd, (k as f32 + 0.5) / samples as f32);
+            let (_, cells, _) = self.lattice.locate_lanes(simd, e.mul_add(at, a));
+            for lane in 0..LANES {
+                if left.0[lane] > 0.0 && self.may_touch(cells[lane], [ends[0][lane], ends[1][lane]]) {
+                    (left.0[lane], found.0[lane]) = (0.0, 1.0);
+                }
+            }
+        }
+        load(simd, &found).simd_gt(0.0)
+    }
+
+    /// Returns whether the line between `ends` [m] may come within the thickness of a triangle that `cell` lists.
+    fn may_touch(&self, cell: usize, ends: [Vec3; 2]) -> bool {
+        let near = NEAR_PLANE * self.thickness;
+        self.listed(cell).iter().any(|&t| !self.misses_plane(t as usize, ends, near))
+    }
+
+    /// Returns whether both `ends` of a line are farther than `near` [m] from the plane of triangle `t`, on the same
+    /// side. Not if they are not finite.
+    #[inline(always)]
+    pub(super) fn misses_plane(&self, t: usize, ends: [Vec3; 2], near: f32) -> bool {
+        let (corner, normal) = (self.corners[t][0], self.normals[t]);
+        let [a, b] = ends.map(|p| normal.dot(p - corner));
+        a.min(b) > near || a.max(b) < -near
     }
 
     /// [`ThinShell::distance_and_normal`] for eight points.
@@ -254,13 +314,68 @@ impl ThinShell {
     pub(super) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let (_, cells, _) = self.lattice.locate_lanes(simd, p);
         let mut rows = [Row::default(); 4];
-        for (lane, cell) in (0..LANES).zip(cells) {
-            let (distance, normal) =
-                self.in_cell(cell, Vec3::new(p.x.lane(lane), p.y.lane(lane), p.z.lane(lane)));
+        for ((lane, cell), p) in (0..LANES).zip(cells).zip(points(p)) {
+            let (distance, normal) = self.in_cell(cell, p);
             for (row, v) in rows.iter_mut().zip([normal.x, normal.y, normal.z, distance]) {
                 row.0[lane] = v;
             }
         }
         (load(simd, &rows[3]), V3::load(simd, &rows))
+    }
+}
+
+/// Returns eight points, one by one.
+#[inline(always)]
+fn points<S: Simd>(p: V3<S>) -> [Vec3; LANES] {
+    let mut rows = [Row::default(); 3];
+    p.store(&mut rows);
+    std::array::from_fn(|lane| Vec3::new(rows[0].0[lane], rows[1].0[lane], rows[2].0[lane]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::dispatch::dispatch;
+    use fearless_simd::Level;
+    use proptest::prelude::*;
+
+    fn vector(size: f32) -> impl Strategy<Value = Vec3> {
+        (-size..size, -size..size, -size..size).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        /// Triangles that are skipped by their planes change no distance, and no point or segment inside is missed.
+        #[test]
+        fn no_triangle_in_reach_is_skipped(
+            triangles in prop::collection::vec([vector(0.1), vector(0.1), vector(0.1)], 1..12),
+            thickness in 0.002f32..0.02, ends in [vector(0.12), vector(0.12)],
+        ) {
+            let corners: Vec<Vec3> = triangles.iter().flatten().copied().collect();
+            let numbers: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+            let shell = ThinShell::new(&corners, &numbers, thickness);
+            let exact = |p: Vec3| {
+                let way = |t: &[Vec3; 3]| {
+                    let at = nearest_on_triangle(p, *t);
+                    p.distance(t[0] * at.x + t[1] * at.y + t[2] * at.z)
+                };
+                triangles.iter().map(way).fold(REACH * thickness, f32::min) - thickness
+            };
+            let [a, b] = ends;
+            let mut inside = false;
+            for k in 0..=32 {
+                let p = a.lerp(b, k as f32 / 32.0);
+                let distance = exact(p);
+                prop_assert!((shell.distance_and_normal(p).0 - distance).abs() < 1e-5, "{p}");
+                inside |= distance < -1e-5;
+                if distance < -1e-5 {
+                    prop_assert!(dispatch!(Level::new(), simd => shell.may_be_inside(simd, V3::splat(simd, p)).any_true()));
+                }
+            }
+            let may = dispatch!(Level::new(), simd => {
+                let (a, e) = (V3::splat(simd, a), V3::splat(simd, b - a));
+                shell.segments_may_be_inside(simd, (a, e), Mask::splat(simd, true)).any_true()
+            });
+            prop_assert!(may || !inside, "a segment inside is skipped");
+        }
     }
 }

@@ -61,6 +61,9 @@ pub struct SubstepContext<'a, S: Simd> {
     pub second_order: bool,
     /// Strands that are in contact.
     pub touches: Mask<S>,
+    /// Strands in contact that are coming to rest. They carry less force from substep to substep; see
+    /// [`stretch::CARRIED`](super::model::stretch::CARRIED).
+    pub rests: Mask<S>,
     /// Colliders, each with its pose at the start and at the end of the substep.
     pub colliders: &'a [ColliderPose],
 }

@@ -96,7 +96,7 @@ mod tests {
             mass_profile,
             young: 3.9e9,
             bend_profile: &[1.0],
-            sections: &[Section { bend: 1.0, flat: 0.0, twist_ratio: 0.46 }; 16],
+            sections: &[Section { bend: 1.0, flat: 0.0, twist_ratio: 0.46 }; 64],
             twists: true,
             substep: 1.0 / 240.0,
             damping: 0.0,

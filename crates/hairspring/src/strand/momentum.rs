@@ -112,6 +112,7 @@ where
         root,
         second_order: false,
         touches: Mask::splat(simd, false),
+        rests: Mask::splat(simd, false),
         colliders: &[],
     };
     let mut memory = Memory::default();

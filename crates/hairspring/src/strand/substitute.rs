@@ -18,7 +18,7 @@ use crate::simd::lanes::{F, Simd, V3, load, store};
 #[inline(always)]
 pub fn substitute<S, M, const B: usize, const N: usize>(
     simd: S,
-    sweep: Linearization,
+    (sweep, carried): (Linearization, F<S>),
     step: &SubstepContext<S>,
     tile: &mut Tile,
     scratch: &mut Scratch,
@@ -39,6 +39,7 @@ where
             unknowns: [F::<S>::splat(simd, 0.0); N],
             along: F::splat(simd, 0.0),
             length_error_share: sweep.length_error_share(),
+            carried,
         },
         projection: Projection::begin(simd, tile, scratch.fixed),
     };

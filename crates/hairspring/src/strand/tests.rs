@@ -445,6 +445,7 @@ fn solve_substep<S: Simd>(
         root,
         second_order: false,
         touches: Mask::splat(simd, false),
+        rests: Mask::splat(simd, false),
         colliders: &[],
     };
     scratch.begin(simd, tile.state);
@@ -457,22 +458,23 @@ fn solve_substep<S: Simd>(
 
 #[inline(always)]
 fn solve_once<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &mut Tile, scratch: &mut Scratch) {
+    let whole = (Linearization::Initial, F::splat(simd, 1.0));
     match tile.layout.model {
         Elastic::Straight => {
             assemble::<S, Straight, 3, 9>(simd, Linearization::Initial, step, tile, scratch);
-            substitute::<S, Straight, 3, 9>(simd, Linearization::Initial, step, tile, scratch);
+            substitute::<S, Straight, 3, 9>(simd, whole, step, tile, scratch);
         }
         Elastic::Curvature => {
             assemble::<S, Curvature<S>, 3, 9>(simd, Linearization::Initial, step, tile, scratch);
-            substitute::<S, Curvature<S>, 3, 9>(simd, Linearization::Initial, step, tile, scratch);
+            substitute::<S, Curvature<S>, 3, 9>(simd, whole, step, tile, scratch);
         }
         Elastic::Rod => {
             assemble::<S, Rod<S>, 4, 11>(simd, Linearization::Initial, step, tile, scratch);
-            substitute::<S, Rod<S>, 4, 11>(simd, Linearization::Initial, step, tile, scratch);
+            substitute::<S, Rod<S>, 4, 11>(simd, whole, step, tile, scratch);
         }
         Elastic::Springs => {
             assemble::<S, Springs, 3, 12>(simd, Linearization::Initial, step, tile, scratch);
-            substitute::<S, Springs, 3, 12>(simd, Linearization::Initial, step, tile, scratch);
+            substitute::<S, Springs, 3, 12>(simd, whole, step, tile, scratch);
         }
     }
 }

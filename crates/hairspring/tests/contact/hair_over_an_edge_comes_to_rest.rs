@@ -1,9 +1,10 @@
 //! Promise: hair over the edge of a box, and over a stone with many edges, comes to rest: after 10 and 15 s, no point
-//! moves faster than 1 mm/s.
+//! moves faster than 1 mm/s, at any angle of the box.
 //!
 //! # Limitations
-//! Over an edge that is steep on the roots' side (60° and more), hair trembles by up to 5 mm/s, and so does the springs
-//! model over the edge of a hull (3 mm/s).
+//! With a friction of 0.1 or less, hair may tremble by up to 20 mm/s over the edge of a box that is turned by 60° to 70°;
+//! with 8 substeps or high quality also with a friction of 0.3. Over the edge of a hull that is turned by 60° to 70° it
+//! may tremble by up to 3 mm/s, and with the springs model at any angle.
 
 use glam::{EulerRot, Mat3, Vec3};
 use hairspring::{
@@ -72,7 +73,9 @@ fn edge(about_z: f32, about_x: f32, hull: bool) -> (ColliderShape, Vec3) {
 #[test]
 fn hair_over_the_edge_of_a_box_comes_to_rest() {
     let mut failures = Vec::new();
-    for (about_z, about_x) in [(45.0, 0.0), (15.0, 0.0), (30.0, 10.0)] {
+    for (about_z, about_x) in
+        [(45.0, 0.0), (15.0, 0.0), (30.0, 10.0), (60.0, 0.0), (65.0, 0.0), (75.0, 0.0), (85.0, 0.0)]
+    {
         for hull in [false, true] {
             let (shape, top) = edge(about_z, about_x, hull);
             let strands: Vec<_> = (0..5)
@@ -87,7 +90,7 @@ fn hair_over_the_edge_of_a_box_comes_to_rest() {
                 })
                 .collect();
             for model in Model::ALL {
-                if hull && model == Model::Springs {
+                if hull && (model == Model::Springs || about_z > 45.0) {
                     continue;
                 }
                 for seconds in [10, 15] {

@@ -4,16 +4,16 @@
 use super::Method;
 use crate::{
     settings::Response,
-    simd::lanes::{F, Simd, V3, load},
+    simd::lanes::{F, Simd, V3, load, store},
     strand::{
         assemble::{Linearization, SubstepContext, assemble},
         frame_context::FrameContext,
-        model::Model,
+        model::{Model, stretch::CARRIED},
         post_solve::{LIMIT, PostSolveParams},
         project::Projection,
         scratch::Scratch,
         substitute::substitute,
-        tile::{Tile, rest, strand},
+        tile::{Tile, rest, state, strand},
     },
 };
 
@@ -83,15 +83,22 @@ where
     S: Simd,
     M: Model<S, B, N>,
 {
-    assemble::<S, M, B, N>(simd, Linearization::Initial, step, tile, scratch);
-    let projection = substitute::<S, M, B, N>(simd, Linearization::Initial, step, tile, scratch);
-    if frame.iterations == 1 {
-        return projection;
+    let whole = F::splat(simd, 1.0);
+    let mut carried = step.rests.select(F::splat(simd, CARRIED), whole);
+    let newton = frame.iterations > 1;
+    if newton {
+        // The iterations add up to the tension; `refine` keeps the share of it.
+        for (rows, before) in tile.state.iter().zip(&mut *scratch.change) {
+            store(load(simd, &rows[state::TENSION]), &mut before[0]);
+        }
+        carried = whole;
     }
-    refine::<S, M, B, N>(simd, frame, step, tile, scratch)
+    assemble::<S, M, B, N>(simd, Linearization::Initial, step, tile, scratch);
+    let projection = substitute::<S, M, B, N>(simd, (Linearization::Initial, carried), step, tile, scratch);
+    if newton { refine::<S, M, B, N>(simd, frame, step, tile, scratch) } else { projection }
 }
 
-/// Newton's iterations after the first solve.
+/// Newton's iterations after the first solve. The tensions before it are in `scratch.change`.
 ///
 /// Not inlined, so that the kernel of the default quality stays small.
 #[inline(never)]
@@ -124,16 +131,17 @@ where
     S: Simd,
     M: Model<S, B, N>,
 {
+    let whole = F::<S>::splat(simd, 1.0);
     // Newton: linearize again at the last iterate. A correction larger than the previous one shows that the
     // step was too long, so the next one is halved (the natural monotonicity test of Deuflhard 2004, *Newton
     // Methods*, §3.3).
-    let mut share = F::<S>::splat(simd, 1.0);
+    let mut share = whole;
     let mut last = F::<S>::splat(simd, f32::INFINITY);
     let points = tile.rest.len();
     for _ in 1..frame.iterations {
         scratch.kick[..points].copy_from_slice(&scratch.edges[..points]);
         assemble::<S, M, B, N>(simd, Linearization::Newton, step, tile, scratch);
-        substitute::<S, M, B, N>(simd, Linearization::Newton, step, tile, scratch);
+        substitute::<S, M, B, N>(simd, (Linearization::Newton, whole), step, tile, scratch);
         let (mut size, mut length) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 0.0));
         let mut change = V3::zero(simd);
         for i in M::DRIVEN..points {
@@ -157,6 +165,11 @@ where
             break;
         }
         last = size;
+    }
+    for (rows, before) in tile.state.iter_mut().zip(&*scratch.change) {
+        let (before, row) = (load(simd, &before[0]), &mut rows[state::TENSION]);
+        let now = load(simd, row);
+        store(step.rests.select((now - before).mul_add(CARRIED, before), now), row);
     }
     // After a damped step, the segments are not where the upward sweep evaluated them.
     Projection::eliminate_all(simd, M::STRIDE, tile, scratch)

@@ -96,6 +96,10 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
         (V3::load(simd, next) - behind).store(next);
 
         let second_order = frame.integrator == Integrator::Bdf2 && continues;
+        let touches = touching(simd, frame, &substep.colliders, tile);
+        // Contacts between strands are forces of the substep before, and not part of the solve.
+        let rests = M::DAMPS_AT_REST && touches.any_true() && !frame.hair_contact;
+        let rests = if rests { touches & slow(simd, moved, frame.h, tile) } else { Mask::splat(simd, false) };
         let step = SubstepContext {
             number,
             left: 1.0 - substep.fraction,
@@ -105,7 +109,8 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
             root,
             moved,
             second_order,
-            touches: touching(simd, frame, &substep.colliders, tile),
+            touches,
+            rests,
             colliders: &substep.colliders,
         };
         let finish = I::advance(simd, frame, &step, tile, scratch);
@@ -167,6 +172,23 @@ fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u
 /// How long a strand still counts as touching after its last contact [s]. Found by trial: every value from
 /// 0.05 to 0.25 keeps hair on thin rods.
 const TOUCHED: f32 = 0.1;
+
+/// Speed relative to the root below which a strand in contact is coming to rest [m/s]. Strands tremble at up to 0.01
+/// where all of a force is carried; see [`stretch::CARRIED`](super::model::stretch::CARRIED).
+const SLOW: f32 = 0.02;
+
+/// Returns the strands of which no point is faster than [`SLOW`], relative to the root, which moved by `moved` [m] in
+/// the substep of `h` [s].
+#[inline(always)]
+fn slow<S: Simd>(simd: S, moved: V3<S>, h: f32, tile: &Tile) -> Mask<S> {
+    let root = moved * F::splat(simd, 1.0 / h);
+    let mut most = F::<S>::splat(simd, 0.0);
+    for rows in tile.state.iter() {
+        let v = V3::load(simd, &rows[state::V..]) - root;
+        most = most.max(v.dot(v));
+    }
+    most.simd_lt(SLOW * SLOW)
+}
 
 /// Returns the strands that touch a collider or are gripped, or did so within the last [`TOUCHED`] seconds;
 /// all strands if any strands touch each other.

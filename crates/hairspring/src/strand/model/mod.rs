@@ -69,11 +69,13 @@ pub struct Solved<S: Simd, const N: usize> {
     /// The share of the length errors before the solve that is added to the tensions; see
     /// `Linearization::length_error_share`.
     pub length_error_share: f32,
+    /// The share of the force of a stretch spring that becomes tension; see [`stretch::CARRIED`].
+    pub carried: F<S>,
 }
 
 impl<S: Simd, const N: usize> Solved<S, N> {
-    /// Returns the tension that the solve added to the spring to the particle `far` after this one, with rest
-    /// length L and stiffness `k`: k (C + e·(δ_far − δ) / L) [N]. C is the constraint function of fast
+    /// Returns the tension that the solve adds to the spring to the particle `far` after this one, with rest
+    /// length L and stiffness `k`: the carried share of k (C + e·(δ_far − δ) / L) [N]. C is the constraint function of fast
     /// projection, which needs no square root.
     #[inline(always)]
     pub fn taken(&self, far: usize, [length, inverse]: [F<S>; 2], k: F<S>) -> F<S> {
@@ -81,7 +83,8 @@ impl<S: Simd, const N: usize> Solved<S, N> {
         let u = (if far == 1 { edge } else { edge + next }) * inverse;
         // Clamped, because C grows quadratically where a root has jumped.
         let longer = length * u.dot(u).min(4.0).mul_add(0.5, F::splat(k.simd, -0.5));
-        k * longer.mul_add(self.length_error_share, u.dot(self.moved[far] - self.moved[0]))
+        let longer = longer.mul_add(self.length_error_share, u.dot(self.moved[far] - self.moved[0]));
+        k * self.carried * longer
     }
 }
 
@@ -94,6 +97,9 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// Minimum share of the predicted displacement that rotates the tension of a segment, with backward
     /// Euler; see [`stretch::SIDEWAYS`] [1].
     const SIDEWAYS: f32 = stretch::SIDEWAYS;
+
+    /// Whether strands in contact that are coming to rest carry less tension; see [`stretch::CARRIED`].
+    const DAMPS_AT_REST: bool = true;
 
     /// The coupling pattern of the matrix.
     const PROFILE: Profile<B, N> = Profile::within(N - 1);
