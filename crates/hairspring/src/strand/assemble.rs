@@ -61,9 +61,9 @@ pub struct SubstepContext<'a, S: Simd> {
     pub second_order: bool,
     /// Strands that are in contact.
     pub touches: Mask<S>,
-    /// Strands in contact that are coming to rest. They carry less force from substep to substep; see
+    /// The share of the force of a stretch spring that becomes tension [1]; see
     /// [`stretch::CARRIED`](super::model::stretch::CARRIED).
-    pub rests: Mask<S>,
+    pub carried: F<S>,
     /// Colliders, each with its pose at the start and at the end of the substep.
     pub colliders: &'a [ColliderPose],
 }

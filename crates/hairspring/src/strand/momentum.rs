@@ -112,7 +112,7 @@ where
         root,
         second_order: false,
         touches: Mask::splat(simd, false),
-        rests: Mask::splat(simd, false),
+        carried: F::splat(simd, 1.0),
         colliders: &[],
     };
     let mut memory = Memory::default();

@@ -445,7 +445,7 @@ fn solve_substep<S: Simd>(
         root,
         second_order: false,
         touches: Mask::splat(simd, false),
-        rests: Mask::splat(simd, false),
+        carried: F::splat(simd, 1.0),
         colliders: &[],
     };
     scratch.begin(simd, tile.state);

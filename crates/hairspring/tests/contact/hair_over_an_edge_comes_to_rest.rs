@@ -3,8 +3,8 @@
 //!
 //! # Limitations
 //! With a friction of 0.1 or less, hair may tremble by up to 20 mm/s over the edge of a box that is turned by 60° to 70°;
-//! with 8 substeps or high quality also with a friction of 0.3. Over the edge of a hull that is turned by 60° to 70° it
-//! may tremble by up to 3 mm/s, and with the springs model at any angle.
+//! with 8 substeps or high quality also with a friction of 0.3. Over the edge of a hull that is turned by 60° or more it
+//! may tremble by up to 6 mm/s, and with the springs model by 3 mm/s at any angle.
 
 use glam::{EulerRot, Mat3, Vec3};
 use hairspring::{

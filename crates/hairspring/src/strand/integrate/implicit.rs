@@ -8,7 +8,7 @@ use crate::{
     strand::{
         assemble::{Linearization, SubstepContext, assemble},
         frame_context::FrameContext,
-        model::{Model, stretch::CARRIED},
+        model::Model,
         post_solve::{LIMIT, PostSolveParams},
         project::Projection,
         scratch::Scratch,
@@ -83,15 +83,14 @@ where
     S: Simd,
     M: Model<S, B, N>,
 {
-    let whole = F::splat(simd, 1.0);
-    let mut carried = step.rests.select(F::splat(simd, CARRIED), whole);
+    let mut carried = step.carried;
     let newton = frame.iterations > 1;
     if newton {
         // The iterations add up to the tension; `refine` keeps the share of it.
         for (rows, before) in tile.state.iter().zip(&mut *scratch.change) {
             store(load(simd, &rows[state::TENSION]), &mut before[0]);
         }
-        carried = whole;
+        carried = F::splat(simd, 1.0);
     }
     assemble::<S, M, B, N>(simd, Linearization::Initial, step, tile, scratch);
     let projection = substitute::<S, M, B, N>(simd, (Linearization::Initial, carried), step, tile, scratch);
@@ -169,7 +168,8 @@ where
     for (rows, before) in tile.state.iter_mut().zip(&*scratch.change) {
         let (before, row) = (load(simd, &before[0]), &mut rows[state::TENSION]);
         let now = load(simd, row);
-        store(step.rests.select((now - before).mul_add(CARRIED, before), now), row);
+        let less = step.carried.simd_lt(1.0);
+        store(less.select((now - before).mul_add(step.carried, before), now), row);
     }
     // After a damped step, the segments are not where the upward sweep evaluated them.
     Projection::eliminate_all(simd, M::STRIDE, tile, scratch)

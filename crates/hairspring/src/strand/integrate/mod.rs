@@ -22,7 +22,7 @@ use super::{
     assemble::SubstepContext,
     drag::Drag,
     frame_context::FrameContext,
-    model::{Model, Stretching},
+    model::{Model, Stretching, stretch::CARRIED},
     post_solve::{PostSolveParams, post_solve, post_solve_shared},
     precomputed::precompute,
     root::Root,
@@ -30,7 +30,10 @@ use super::{
     tile::{Tile, along, anisotropic_drag, position_spring, rest, segment_contact, state},
 };
 use crate::simd::lanes::{F, Mask, Simd, V3, load, store};
-use crate::{collide::ColliderPose, settings::Integrator};
+use crate::{
+    collide::{ColliderPose, ColliderShape},
+    settings::Integrator,
+};
 
 /// A family of time integrators, for strands with the elastic model `M`.
 pub trait Method<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> {
@@ -97,9 +100,14 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
 
         let second_order = frame.integrator == Integrator::Bdf2 && continues;
         let touches = touching(simd, frame, &substep.colliders, tile);
-        // Contacts between strands are forces of the substep before, and not part of the solve.
-        let rests = M::DAMPS_AT_REST && touches.any_true() && !frame.hair_contact;
-        let rests = if rests { touches & slow(simd, moved, frame.h, tile) } else { Mask::splat(simd, false) };
+        // Contacts between strands are forces of the substep before, and not part of the solve. Contacts on a hull move
+        // slowly along a segment, which damps vibrations; with less tension carried, single strands slipped off a stone.
+        let by_itself =
+            frame.hair_contact || substep.colliders.iter().any(|c| matches!(c.shape, ColliderShape::Hull(_)));
+        let mut share = F::splat(simd, 1.0);
+        if M::DAMPS_AT_REST && touches.any_true() && !by_itself {
+            share = touches.select(carried(simd, moved, frame.h, tile), share);
+        }
         let step = SubstepContext {
             number,
             left: 1.0 - substep.fraction,
@@ -110,7 +118,7 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
             moved,
             second_order,
             touches,
-            rests,
+            carried: share,
             colliders: &substep.colliders,
         };
         let finish = I::advance(simd, frame, &step, tile, scratch);
@@ -174,20 +182,23 @@ fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u
 const TOUCHED: f32 = 0.1;
 
 /// Speed relative to the root below which a strand in contact is coming to rest [m/s]. Strands tremble at up to 0.01
-/// where all of a force is carried; see [`stretch::CARRIED`](super::model::stretch::CARRIED).
+/// where all of a force is carried.
 const SLOW: f32 = 0.02;
 
-/// Returns the strands of which no point is faster than [`SLOW`], relative to the root, which moved by `moved` [m] in
-/// the substep of `h` [s].
+/// Returns the share of the force of a stretch spring that becomes tension in a strand in contact [1]: from [`CARRIED`]
+/// at rest to 1 where its fastest point moves at [`SLOW`] relative to the root, which moved by `moved` [m] in the substep
+/// of `h` [s].
 #[inline(always)]
-fn slow<S: Simd>(simd: S, moved: V3<S>, h: f32, tile: &Tile) -> Mask<S> {
+fn carried<S: Simd>(simd: S, moved: V3<S>, h: f32, tile: &Tile) -> F<S> {
     let root = moved * F::splat(simd, 1.0 / h);
     let mut most = F::<S>::splat(simd, 0.0);
     for rows in tile.state.iter() {
         let v = V3::load(simd, &rows[state::V..]) - root;
         most = most.max(v.dot(v));
     }
-    most.simd_lt(SLOW * SLOW)
+    let one = F::<S>::splat(simd, 1.0);
+    let rests = most.mul_add(-1.0 / (SLOW * SLOW), one).max(0.0);
+    rests.mul_add(CARRIED - 1.0, one)
 }
 
 /// Returns the strands that touch a collider or are gripped, or did so within the last [`TOUCHED`] seconds;

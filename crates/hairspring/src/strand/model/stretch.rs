@@ -59,7 +59,7 @@ pub fn stiffening(points: usize) -> f32 {
 pub const STRETCH: f32 = 400.0;
 
 /// Share β of the force that a segment's spring exerts in a substep that is carried to the next one as tension, for
-/// strands in contact that are coming to rest [1]. Others carry all of it.
+/// strands at rest in contact with a collider that is no hull [1]. It grows with their speed, and others carry all of it.
 ///
 /// Carried forces are the integral part of a controller that keeps the length. For a vibration with the stiffness k
 /// and the mass m, with κ = k h²/m, a substep multiplies the amplitude by 1/(1 − u), where
@@ -71,8 +71,7 @@ pub const STRETCH: f32 = 400.0;
 /// At β = 1 it grows if κ < 1. Projection stops that on a free strand, because it moves the points as the whole strand
 /// moves. It does not know that friction holds a point. A span between the root and an edge that the strand lies on
 /// gained 0.8 % in each substep, and trembled at 6 mm/s. The proportional part, 1 − β, damps it. Found by trial: with 8
-/// substeps, strands over some edges tremble at 0.5, and not at 0.4 or 0.3. Over a stone, no strand is faster than 0.4 mm/s
-/// at 0.3, and than 0.5 mm/s at 0.4.
+/// substeps, strands over some edges tremble at 0.5, and not at 0.4 or 0.3.
 pub const CARRIED: f32 = 0.3;
 
 /// Minimum share γ of a substep's predicted displacement δ₀ = h v at which lateral tension forces are
