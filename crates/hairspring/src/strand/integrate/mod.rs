@@ -100,12 +100,12 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
 
         let second_order = frame.integrator == Integrator::Bdf2 && continues;
         let touches = touching(simd, frame, &substep.colliders, tile);
-        // Contacts between strands are forces of the substep before, and not part of the solve. Contacts on a hull move
-        // slowly along a segment, which damps vibrations; with less tension carried, single strands slipped off a stone.
-        let by_itself =
+        // Contacts between strands are forces of the substep before, and not part of the solve. Where hulls carried less,
+        // single strands slipped off a stone at 5 cm/s.
+        let carries_all =
             frame.hair_contact || substep.colliders.iter().any(|c| matches!(c.shape, ColliderShape::Hull(_)));
         let mut share = F::splat(simd, 1.0);
-        if M::DAMPS_AT_REST && touches.any_true() && !by_itself {
+        if M::DAMPS_AT_REST && touches.any_true() && !carries_all {
             share = touches.select(carried(simd, moved, frame.h, tile), share);
         }
         let step = SubstepContext {

@@ -69,7 +69,7 @@ pub const STRETCH: f32 = 400.0;
 /// ```
 ///
 /// At β = 1 it grows if κ < 1. Projection stops that on a free strand, because it moves the points as the whole strand
-/// moves. It does not know that friction holds a point. A span between the root and an edge that the strand lies on
+/// moves. It does not take friction into account, which holds a point. A span between the root and an edge that the strand lies on
 /// gained 0.8 % in each substep, and trembled at 6 mm/s. The proportional part, 1 − β, damps it. Found by trial: with 8
 /// substeps, strands over some edges tremble at 0.5, and not at 0.4 or 0.3.
 pub const CARRIED: f32 = 0.3;
