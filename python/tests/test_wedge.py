@@ -1,5 +1,6 @@
 """`hairspring wedge`."""
 
+import contextlib
 import csv
 import json
 import os
@@ -65,15 +66,27 @@ def write_cache(folder, size=0.01):
         (folder / f"body.{k:04}.obj").write_text(text + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
 
 
-def start(scene, out, *options):
-    """Starts a wedge with two programs at a time that take long, and waits until each has begun to write."""
-    command = [sys.executable, "-m", "hairspring", "wedge", scene, "--frames", "1-100000", "--size", "64x64", "-o", out]
-    wedge = subprocess.Popen([*map(str, command), *options], stderr=subprocess.PIPE, text=True)
-    until = time.time() + 60
-    while len(pending(out)) < 2 and time.time() < until:
-        time.sleep(0.05)
-    assert len(pending(out)) == 2
-    return wedge
+@pytest.fixture
+def start():
+    """Starts a wedge with two programs at a time that take long, and waits until each has begun to write. Whatever still
+    runs after the test is ended."""
+    folders = []
+
+    def wedge(scene, out, *options):
+        folders.append(out)
+        command = [sys.executable, "-m", "hairspring", "wedge", scene, "--frames", "1-100000", "--size", "64x64", "-o", out]
+        started = subprocess.Popen([*map(str, command), *options], stderr=subprocess.PIPE, text=True)
+        # Ray takes its time to start on a machine that does other work.
+        until = time.time() + 240
+        while len(pending(out)) < 2 and time.time() < until and started.poll() is None:
+            time.sleep(0.05)
+        assert len(pending(out)) == 2
+        return started
+
+    yield wedge
+    for process in [process for out in folders for process in programs_in(out)]:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(int(process), signal.SIGKILL)
 
 
 def pending(out):
@@ -136,7 +149,7 @@ def test_a_wedge_runs_on_ray(tmp_path, program):
 
 
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
-def test_an_interrupted_wedge_stops_its_programs_and_writes_its_table(tmp_path, name):
+def test_an_interrupted_wedge_stops_its_programs_and_writes_its_table(tmp_path, start, name):
     if not hasattr(signal, name) or not Path("/proc/self/cmdline").exists():
         pytest.skip("needs signals and /proc")
     out = tmp_path / "w"
@@ -259,12 +272,12 @@ def test_different_errors_have_exit_code_1(tmp_path):
     assert exit_code({"a": {"error": "killed", "code": -9}}) == 1
 
 
-def test_an_interrupted_wedge_stops_its_programs_on_ray(tmp_path):
+def test_an_interrupted_wedge_stops_its_programs_on_ray(tmp_path, start):
     pytest.importorskip("ray")
     out = tmp_path / "w"
     wedge = start(shot(tmp_path), out, "--set", "solver.substeps=1,2", "--ray", "local")
     wedge.terminate()
-    _, error = wedge.communicate(timeout=60)
+    _, error = wedge.communicate(timeout=120)
     assert wedge.returncode == 130 and "interrupted; 0 of 2 variants are done" in error, error
     assert not pending(out) and not programs_in(out) and (out / "table.csv").exists()
 

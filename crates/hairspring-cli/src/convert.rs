@@ -44,7 +44,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     output::try_folder(to)?;
     let mut loaded = read_groom(from, &(*units).into()).map_err(|e| Fault::reading(e, from))?;
-    print_notes(&loaded.notes, &loaded.repairs, console);
+    print_notes(&loaded.notes, console);
     if units.reverse {
         loaded.value.reverse();
     }

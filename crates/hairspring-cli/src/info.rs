@@ -53,11 +53,11 @@ pub struct Options {
 fn external(path: &Path, units: &ReadOptions, console: Console) -> Result<Value, Fault> {
     let mut found = json!({});
     let hair = read_groom(path, units).map(|loaded| {
-        print_notes(&loaded.notes, &loaded.repairs, console);
+        print_notes(&loaded.notes, console);
         found["groom"] = groom(&loaded.value, &loaded.repairs);
     });
     let mesh = read_body(path, units).map(|loaded| {
-        print_notes(&loaded.notes, &loaded.repairs, console);
+        print_notes(&loaded.notes, console);
         found["body"] = body(&loaded.value.body);
     });
     match (hair, mesh) {
@@ -86,7 +86,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let mut found = match format {
         Format::Hair | Format::Tfx | Format::Usc | Format::Csv | Format::Ply => {
             let mut loaded = read_groom(path, &units).map_err(wrong)?;
-            print_notes(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, console);
             if options.units.reverse {
                 loaded.value.reverse();
             }
@@ -106,7 +106,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         }
         Format::Gltf | Format::Obj | Format::TfxMesh => match read_body(path, &units) {
             Ok(loaded) => {
-                print_notes(&loaded.notes, &loaded.repairs, console);
+                print_notes(&loaded.notes, console);
                 let mut found = body(&loaded.value.body);
                 found["motions"] = loaded.value.clips.iter().map(clip).collect();
                 found
@@ -114,13 +114,13 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             // A file of lines is a groom.
             Err(why) => {
                 let loaded = read_groom(path, &units).map_err(|_| wrong(why))?;
-                print_notes(&loaded.notes, &loaded.repairs, console);
+                print_notes(&loaded.notes, console);
                 groom(&loaded.value, &loaded.repairs)
             }
         },
         Format::Bvh => {
             let loaded = read_motion(path, None, &units).map_err(wrong)?;
-            print_notes(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, console);
             let Motion { joints, clip: motion } = loaded.value;
             let mut found = clip(&motion);
             let skeleton = Body { joints, ..Body::default() };
@@ -134,8 +134,9 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             json!({ "strands": bones.bones.len(), "joints": bones.names })
         }
         Format::Scene => {
+            options.units.refuse_for_scene()?;
             let loaded = read_scene(path).map_err(wrong)?;
-            print_notes(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, console);
             scene(&loaded.value, &loaded.repairs)
         }
     };

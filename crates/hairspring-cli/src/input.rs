@@ -3,7 +3,6 @@
 use crate::{console::Console, fault::Fault, frames};
 use clap::{Args, ValueEnum};
 use glam::Vec3;
-use hairspring::groom::Repairs;
 use hairspring_io::{Axis, ErrorKind, Format, Inputs, ReadOptions, read_body, read_groom, read_scene};
 use hairspring_scene::{Guides, Scene, SceneGroom};
 use std::path::{Path, PathBuf};
@@ -109,7 +108,7 @@ impl Input {
         let mut scene = if Format::of(path) == Some(Format::Scene) {
             self.units.refuse_for_scene()?;
             let loaded = read_scene(path).map_err(|e| Fault::reading(e, path))?;
-            print_notes(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, console);
             loaded.value
         } else {
             let mut loaded = read_groom(path, &self.units.into()).map_err(|e| match e {
@@ -118,7 +117,7 @@ impl Input {
                 }
                 other => Fault::reading(other, path),
             })?;
-            print_notes(&loaded.notes, &loaded.repairs, console);
+            print_notes(&loaded.notes, console);
             if self.units.reverse {
                 loaded.value.reverse();
             }
@@ -146,7 +145,7 @@ impl Input {
     fn add_body(&self, scene: &mut Scene, console: Console) -> Result<(), Fault> {
         match read_body(&self.path, &self.units.into()) {
             Ok(loaded) => {
-                print_notes(&loaded.notes, &loaded.repairs, console);
+                print_notes(&loaded.notes, console);
                 (scene.body, scene.vertex_cache) = (Some(loaded.value.body), loaded.value.vertex_cache);
             }
             Err(why) if why.kind() == ErrorKind::Unsupported => {
@@ -177,28 +176,6 @@ fn alone(path: &Path, groom: hairspring::groom::Groom) -> Scene {
 }
 
 /// Prints what a reader guessed, left out and repaired.
-pub fn print_notes(notes: &[String], repairs: &Repairs, console: Console) {
+pub fn print_notes(notes: &[String], console: Console) {
     notes.iter().for_each(|n| console.note(n));
-    if repairs.total() > 0 {
-        console.note(format_args!("repaired {}", repaired(repairs)));
-    }
-    if repairs.folds > 0 {
-        console.note(format_args!(
-            "{} joints bend by more than 150°, so that strands are folded there; they are kept as they are",
-            repairs.folds
-        ));
-    }
-}
-
-/// Describes what was repaired; empty if nothing was.
-pub fn repaired(repairs: &Repairs) -> String {
-    let parts = [
-        (repairs.non_finite_points, "points that were not finite"),
-        (repairs.zero_segments, "segments of zero length"),
-        (repairs.short_strands, "strands of fewer than 3 points"),
-        (repairs.bad_radii, "radii that were not above 0"),
-    ];
-    let words: Vec<String> =
-        parts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
-    words.join(", ")
 }

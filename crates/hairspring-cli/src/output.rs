@@ -1,8 +1,12 @@
 //! Output files. Names and folders are checked before the work starts.
 
 use crate::fault::Fault;
+use hairspring_io::Inputs;
 use hairspring_view::sequence_path;
-use std::path::{Path, PathBuf};
+use std::{
+    collections::HashSet,
+    path::{Path, PathBuf},
+};
 
 /// The path of frame `number`: `#` signs are replaced by the number. A name without them is returned as it
 /// is.
@@ -35,6 +39,35 @@ pub fn try_folder(path: &Path) -> Result<(), Fault> {
     tempfile::tempfile_in(folder).map(drop).map_err(|e| {
         Fault::Unwritable(format!("cannot write to the folder {}: {e}; choose another", folder.display()))
     })
+}
+
+/// Refuses a name that frame numbers cannot be put into.
+pub fn check_name(path: &Path) -> Result<(), Fault> {
+    match path.file_name() {
+        Some(name) if name.to_str().is_none() => {
+            Err(Fault::Usage(format!("{}: the name is not valid UTF-8; choose another", path.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses to replace one of the files that the scene or groom `main` consists of.
+pub fn keep_inputs(
+    inputs: &Inputs,
+    main: &Path,
+    outputs: impl IntoIterator<Item = PathBuf>,
+) -> Result<(), Fault> {
+    let inputs: HashSet<PathBuf> = inputs.paths(main).filter_map(|path| path.canonicalize().ok()).collect();
+    // A file that does not exist yet replaces nothing.
+    let replaced =
+        outputs.into_iter().find(|path| path.canonicalize().is_ok_and(|path| inputs.contains(&path)));
+    match replaced {
+        Some(path) => Err(Fault::Usage(format!(
+            "{} is a file of the scene and would be replaced; choose another name for the output",
+            path.display()
+        ))),
+        None => Ok(()),
+    }
 }
 
 /// Writes a whole file: it is complete and on the disk before it appears under its name.

@@ -73,6 +73,7 @@ pub struct Options {
 
 /// Runs the command.
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
+    output::check_name(&options.output)?;
     let kind = Kind::of(&options.output)?;
     output::try_folder(&output::frame_path(&options.output, 1))?;
     if options.resume && kind != Kind::Pictures {
@@ -99,6 +100,8 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         (_, None) => FrameRange::whole(scene.motion_duration(), options.fps),
     };
     let mut wanted: Vec<u32> = range.numbers().collect();
+    let outputs = wanted.iter().map(|number| output::frame_path(&options.output, *number));
+    output::keep_inputs(&files, &options.input.path, outputs)?;
     let sink = match kind {
         Kind::Clip => Sink::Clip(clip(&options.output, options.view.size, options.fps.hertz())?),
         Kind::Pictures => {

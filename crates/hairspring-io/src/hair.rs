@@ -4,6 +4,7 @@
 use crate::{
     Place, Problem,
     bytes::Bytes,
+    color,
     strands::{Read, Strands, gather_offsets},
     units::{Axis, FileUnits},
 };
@@ -92,6 +93,13 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     }
     if header.flags & HAS_COLORS != 0 {
         groom.colors = bytes.array(points, "the colors")?;
+        notes.extend(color::into_range(&mut groom.colors));
+    }
+    if bytes.remaining() > 0 {
+        notes.push(format!(
+            "{} bytes after the last array are not used; the header names fewer points or arrays than the file holds",
+            bytes.remaining()
+        ));
     }
     // Thickness is a diameter. The header's default is a line width for display, not a measurement, so it is
     // not used.

@@ -172,7 +172,37 @@ pub(crate) fn read_groom_on(
     };
     check_groom(path, &groom)?;
     let repairs = sanitize(&mut groom);
+    let notes = notes.into_iter().chain(repair_notes(&repairs)).collect();
     Ok(Loaded { value: groom, format, scale, repairs, notes: plain(notes) })
+}
+
+/// Describes what was repaired, and what was found and kept.
+fn repair_notes(repairs: &Repairs) -> Vec<String> {
+    let parts = [
+        (repairs.non_finite_points, "points that were not finite"),
+        (repairs.zero_segments, "segments of zero length"),
+        (repairs.short_strands, "strands of fewer than 3 points"),
+        (repairs.bad_radii, "radii that were not above 0"),
+    ];
+    let words: Vec<String> =
+        parts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
+    let mut notes = Vec::new();
+    if !words.is_empty() {
+        notes.push(format!("repaired {}", words.join(", ")));
+    }
+    if repairs.empty_strands > 0 {
+        notes.push(format!(
+            "{} strands have no finite point; each is now a stub of a millimeter at the root of another strand; remove them",
+            repairs.empty_strands
+        ));
+    }
+    if repairs.folds > 0 {
+        notes.push(format!(
+            "{} joints bend by more than 150°, so that strands are folded there; they are kept as they are",
+            repairs.folds
+        ));
+    }
+    notes
 }
 
 /// Checks that a groom has strands, near enough to the origin.

@@ -151,6 +151,12 @@ impl Inputs {
         self.0.iter().map(|(name, checksum)| (name.as_str(), checksum.sha256.as_str()))
     }
 
+    /// The paths of the files that the scene or groom `main` consists of.
+    pub fn paths(&self, main: &Path) -> impl Iterator<Item = PathBuf> {
+        let folder = main.parent().unwrap_or(Path::new("")).to_owned();
+        self.0.keys().map(move |name| folder.join(name))
+    }
+
     /// Names of files that both have read with different content.
     #[must_use]
     pub fn changed(&self, other: &Self) -> Vec<String> {

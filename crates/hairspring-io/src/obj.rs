@@ -6,7 +6,7 @@
 //! computed. Materials are not read: a scene file sets the color.
 
 use crate::{
-    Place, Problem, chains,
+    Place, Problem, chains, color,
     polygon::triangulate,
     strands::Read,
     text::{self, Lines, as_text, finite, shortened},
@@ -87,12 +87,14 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
         vertex_uv.resize(mesh.positions.len(), u32::MAX);
         mesh.uvs = vertex_uv.iter().map(|uv| uvs.get(*uv as usize).copied().unwrap_or_default()).collect();
     }
+    let mut notes = left_out.notes();
     if !mesh.colors.is_empty() {
         mesh.colors.resize(mesh.positions.len(), Vec3::ZERO);
+        notes.extend(color::into_range(&mut mesh.colors));
     }
     mesh.parts = parts.finish(mesh.triangles.len());
     mesh.compute_normals();
-    Ok((mesh, left_out.notes()))
+    Ok((mesh, notes))
 }
 
 /// Reads the polylines of an `.obj` file as the strands of a groom, in its own units.
@@ -119,17 +121,23 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     let text = as_text(data);
     let (mut vertices, mut uvs): (Vec<Vec3>, Vec<Vec2>) = (Vec::new(), Vec::new());
     let mut lines = Polylines::default();
-    let mut faces = 0usize;
+    let (mut faces, mut points, mut colored) = (0usize, 0usize, 0usize);
     for (line_number, line) in statements(&text) {
         let mut words = line.split_whitespace();
         match words.next() {
-            Some("v") => vertices.push(vertex(&mut words, line_number)?),
+            Some("v") => {
+                vertices.push(vertex(&mut words, line_number)?);
+                colored += usize::from(color(words).is_some());
+            }
             Some("vt") => uvs.push(texture_coordinate(&mut words, line_number)?),
             Some("f") => faces += 1,
             Some("l") => {
                 let mut rest = words.map(|word| corner_of(word, vertices.len(), uvs.len(), line_number));
                 let Some(root) = rest.next().transpose()? else { continue };
-                let Some(first) = rest.next() else { continue };
+                let Some(first) = rest.next() else {
+                    points += 1;
+                    continue;
+                };
                 lines.begin(root);
                 lines.push(first?);
                 for corner in rest {
@@ -161,8 +169,14 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
         offsets: lines.offsets,
         ..Groom::default()
     };
-    if faces > 0 {
-        notes.push(format!("{faces} faces are left out, because a groom is read from polylines"));
+    for (count, text) in [
+        (faces, "faces are left out, because a groom is read from polylines"),
+        (points, "polylines of one point are left out"),
+        (colored, "vertices have a color, which is not used; write a .ply to keep it"),
+    ] {
+        if count > 0 {
+            notes.push(format!("{count} {text}"));
+        }
     }
     Ok(Read { groom, radii: None, true_radii: false, units: FileUnits::default(), notes })
 }
@@ -319,12 +333,11 @@ fn vertex<'a>(words: &mut impl Iterator<Item = &'a str>, line: usize) -> Result<
     Ok(Vec3::from(numbers(words, line, "a vertex")?))
 }
 
-/// The color of a vertex, which some programs write after its position: three numbers from 0 to 1. Other numbers
-/// there, such as a weight, are not used.
+/// The color of a vertex, which some programs write after its position: three numbers. Other numbers there, such as a
+/// weight, are not used.
 fn color<'a>(words: impl Iterator<Item = &'a str>) -> Option<Vec3> {
     let numbers: Vec<f32> = words.map_while(|word| word.parse().ok()).take(4).collect();
-    let color = Vec3::from(<[f32; 3]>::try_from(numbers).ok()?);
-    (color.is_finite() && color.min_element() >= 0.0 && color.max_element() <= 1.0).then_some(color)
+    <[f32; 3]>::try_from(numbers).ok().map(Vec3::from)
 }
 
 /// Reads a texture coordinate of one number or more.

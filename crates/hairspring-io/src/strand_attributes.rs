@@ -79,6 +79,11 @@ impl StrandAttributes {
                 groom.scales.iter_mut().zip(values).for_each(|(scale, x)| put(scale, x));
             }
         }
+        if guide.iter().any(|flag| *flag != 0.0 && *flag != 1.0) {
+            read.notes.push(
+                "guide flags other than 0 and 1 count as 1 if they are above 0, and as 0 otherwise".into(),
+            );
+        }
         let guides: Vec<u32> =
             (0..strands as u32).filter(|s| guide.get(*s as usize).is_some_and(|flag| *flag > 0.0)).collect();
         if !guides.is_empty() && guides.len() < strands {

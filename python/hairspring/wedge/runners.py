@@ -88,5 +88,5 @@ def run_on_ray(all_tasks: list[dict], address: str, retries: int, report: Report
     for unfinished in waiting:
         ray.cancel(unfinished)
     if waiting:
-        ray.wait(list(waiting), num_returns=len(waiting), timeout=20)
+        ray.wait(list(waiting), num_returns=len(waiting), timeout=60)
     ray.shutdown()

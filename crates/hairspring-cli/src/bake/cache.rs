@@ -28,15 +28,19 @@ impl Cache {
         self.path.with_file_name(name)
     }
 
-    /// Creates the folder of the samples, and returns their numbered files: positions without attributes.
+    /// Returns the numbered files of the samples: positions without attributes. There is an error if the format has no
+    /// writer.
     pub fn samples(&self) -> Result<PathBuf, Fault> {
-        // Says before the simulation that there is no writer.
         hairspring_io::check_cache_format(&self.path).map_err(Fault::writing)?;
+        Ok(self.folder().join("sample.######.data"))
+    }
+
+    /// Creates the folder of the samples.
+    pub fn create_folder(&self) -> Result<(), Fault> {
         let folder = self.folder();
         std::fs::create_dir_all(&folder).map_err(|e| {
             Fault::Unwritable(format!("the folder {} could not be created: {e}", folder.display()))
-        })?;
-        Ok(folder.join("sample.######.data"))
+        })
     }
 
     /// Writes the file from its samples. Velocities are central differences; at the ends, one-sided ones.

@@ -109,6 +109,7 @@ impl Options {
     /// put together to, if any.
     fn files(&self) -> Result<(PathBuf, Option<Cache>), Fault> {
         let output = &self.output;
+        output::check_name(output)?;
         let wrong = |text: String| Err(Fault::Usage(text));
         let cache = Cache::new(output, self.over.clone());
         let known = Format::of(output).is_some_and(|f| Format::GROOMS.contains(&f));
@@ -175,6 +176,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     )?;
     let all: Vec<u32> = samples.of(range).collect();
     let mut wanted = all.clone();
+    let outputs = wanted.iter().map(|sample| output::frame_path(&pattern, *sample));
+    output::keep_inputs(&files, &options.input.path, outputs.chain([options.output.clone()]))?;
+    if let Some(cache) = &cache {
+        cache.create_folder()?;
+    }
     let mut manifest = None;
     if output::is_sequence(&pattern) {
         let origin = Origin::new("bake", &options.listed(), files);

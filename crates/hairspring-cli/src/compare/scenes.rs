@@ -14,7 +14,6 @@ use crate::{
     totals::grouped,
 };
 use figures::{Distances, Figures};
-use hairspring::groom::Repairs;
 use hairspring_app::{Difference, SideBySide, captions_of, scene_differences, set_in_text};
 use hairspring_io::{Format, Inputs, read_scene_text, read_settings, scene_text};
 use hairspring_scene::{
@@ -70,7 +69,6 @@ struct Side {
     /// The files that the scene names.
     files: Inputs,
     notes: Vec<String>,
-    repairs: Repairs,
 }
 
 /// Runs the command.
@@ -94,9 +92,9 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     };
     let a = side(path, "--set-a", &options.set_a, options)?;
     let b = side(options.b.as_ref().unwrap_or(path), "--set-b", &options.set_b, options)?;
-    print_notes(&a.notes, &a.repairs, console);
-    if (&b.notes, b.repairs) != (&a.notes, a.repairs) {
-        print_notes(&b.notes, &b.repairs, console);
+    print_notes(&a.notes, console);
+    if b.notes != a.notes {
+        print_notes(&b.notes, console);
     }
     let settings = scene_differences([&a.settings, &b.settings], [&a.text, &b.text])
         .map_err(|why| Fault::Content(why.to_string()))?;
@@ -188,15 +186,7 @@ fn side(path: &Path, flag: &str, sets: &[String], options: &Options) -> Result<S
     }
     let (loaded, files) = Inputs::record(path, || read_scene_text(path, &text));
     let loaded = loaded.map_err(reading)?;
-    Ok(Side {
-        path: path.to_owned(),
-        text,
-        settings,
-        scene: loaded.value,
-        files,
-        notes: loaded.notes,
-        repairs: loaded.repairs,
-    })
+    Ok(Side { path: path.to_owned(), text, settings, scene: loaded.value, files, notes: loaded.notes })
 }
 
 /// The text of a scene that holds only a groom.

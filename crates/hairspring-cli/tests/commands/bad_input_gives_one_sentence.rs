@@ -41,6 +41,39 @@ fn missing_and_unknown_files() {
 }
 
 #[test]
+fn an_output_never_replaces_a_file_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    hairspring_io::write_groom(&f.join("fan.2.data"), &groom(4)).unwrap();
+    std::fs::write(f.join("s.toml"), "[[groom]]\nfile = \"fan.2.data\"\nscale = 1.0\n").unwrap();
+    let words = ["fan.2.data", "is a file of the scene and would be replaced"];
+    refuse(f, &["bake", "s.toml", "-o", "fan.#.data", "--frames", "1-3"], 2, &words);
+    refuse(f, &["bake", "./fan.2.data", "-o", "fan.2.data", "--frames", "1-1"], 2, &words);
+    // Frame 2 is not written.
+    succeed(f, &["bake", "s.toml", "-o", "fan.#.data", "--frames", "3-4"]);
+}
+
+#[test]
+fn a_refused_cache_leaves_no_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    write_groom(folder.path(), 5);
+    let bake = ["bake", "groom.hair", "-o", "x.pc2", "--start", "1001", "--frames", "1-3"];
+    refuse(folder.path(), &bake, 2, &["frame 1 is before frame 1001"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn numbered_names_must_be_valid_text() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    write_groom(folder.path(), 5);
+    let output = std::ffi::OsStr::from_bytes(b"\xff.#.data");
+    let done = program(folder.path()).args(["bake", "groom.hair", "-o"]).arg(output).output().unwrap();
+    let error = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.code() == Some(2) && error.contains("not valid UTF-8"), "{error}");
+}
+
+#[test]
 fn live_refuses_files_that_cannot_be_opened() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();

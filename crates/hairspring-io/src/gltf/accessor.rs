@@ -63,7 +63,7 @@ impl<'a> Buffers<'a> {
 
 /// Reads the colors of accessor `index`, with or without opacity, which is left out.
 pub(super) fn colors(document: &Document, index: usize, buffers: &Buffers<'_>) -> Result<Vec<Vec3>, Problem> {
-    let rgb = |r: f64, g: f64, b: f64| Vec3::new(r as f32, g as f32, b as f32).clamp(Vec3::ZERO, Vec3::ONE);
+    let rgb = |r: f64, g: f64, b: f64| Vec3::new(r as f32, g as f32, b as f32);
     Ok(if accessor(document, index, "colors")?.shape.components() == 4 {
         let colors = components::<4>(document, index, buffers, "colors")?;
         colors.into_iter().map(|[r, g, b, _]| rgb(r, g, b)).collect()

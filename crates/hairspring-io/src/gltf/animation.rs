@@ -14,9 +14,15 @@ use std::{
     rc::Rc,
 };
 
-/// Rate at which animations are resampled [Hz]: that of a display, and higher than hand-made or captured
-/// motion needs.
-const RATE: f32 = 60.0;
+/// Lowest rate at which animations are resampled [Hz]: that of a display, and higher than hand-made or captured
+/// motion needs. It is raised until the last sample is at the last key.
+const RATE: f64 = 60.0;
+
+/// Difference of a duration from whole samples that is due to rounding [samples].
+const ROUNDING: f64 = 0.01;
+
+/// Smallest scale of a joint along each axis [1]. Animators scale an object to 0 to hide it.
+const SMALLEST_SCALE: f32 = 1e-4;
 
 /// Joint samples that a file of any size may make: three minutes of a hundred joints.
 const SAMPLES: usize = 1_200_000;
@@ -83,9 +89,11 @@ pub(super) fn clips(
         if !(end - start).is_finite() {
             continue;
         }
-        // A quarter of a frame of slack: keys at frame 12.999 belong to frame 13.
-        let frames = ((end - start) * RATE + 0.25).floor() as usize;
-        let frames = frames.saturating_add(1);
+        let duration = f64::from(end) - f64::from(start);
+        let steps = (duration * RATE - ROUNDING).ceil().max(0.0);
+        let rate =
+            if (steps - duration * RATE).abs() > ROUNDING && steps > 0.0 { steps / duration } else { RATE };
+        let frames = (steps as usize).saturating_add(1);
         let joint_count = skeleton.joints.len();
         samples_so_far = frames.saturating_mul(joint_count).saturating_add(samples_so_far);
         if samples_so_far > most {
@@ -96,19 +104,60 @@ pub(super) fn clips(
             return Err(Problem::limit(crate::Place::Whole, text));
         }
         let mut samples = with_room(frames * joint_count)?;
+        let mut hidden = Hidden::default();
         for frame in 0..frames {
-            let time = start + frame as f32 / RATE;
+            let time = start + (frame as f64 / rate) as f32;
             let first = samples.len();
             samples.extend_from_slice(&skeleton.defaults);
             for track in &tracks {
                 track.apply(time, &mut samples[first + track.joint]);
             }
+            hidden.keep_scales(&mut samples, joint_count, time);
         }
-        clips.push(Clip { name, rate: f64::from(RATE), joint_count, samples });
+        if let Some(note) = hidden.note(&name, skeleton) {
+            notes.push(note);
+        }
+        clips.push(Clip { name, rate, joint_count, samples });
         morphs.push(ClipWeights { start, ..weights });
     }
     left_out.note(notes);
     Ok((clips, morphs.morphs))
+}
+
+/// Joints that an animation scales to almost 0.
+#[derive(Default)]
+struct Hidden {
+    joints: HashSet<usize>,
+    /// The first joint, and the time [s].
+    first: Option<(usize, f32)>,
+}
+
+impl Hidden {
+    /// Gives joints of the last frame whose scale is almost 0 the scale of the frame before it, or 1.
+    fn keep_scales(&mut self, samples: &mut [Trs], joint_count: usize, time: f32) {
+        let (earlier, last) = samples.split_at_mut(samples.len() - joint_count);
+        for (joint, local) in last.iter_mut().enumerate() {
+            if local.scale.abs().min_element() < SMALLEST_SCALE {
+                local.scale = earlier
+                    .get(earlier.len().wrapping_sub(joint_count - joint))
+                    .map_or(Vec3::ONE, |before| before.scale);
+                self.joints.insert(joint);
+                self.first.get_or_insert((joint, time));
+            }
+        }
+    }
+
+    fn note(&self, animation: &str, skeleton: &Skeleton) -> Option<String> {
+        let (joint, time) = self.first?;
+        let more = match self.joints.len() - 1 {
+            0 => String::new(),
+            n => format!(" and {n} more"),
+        };
+        Some(format!(
+            "animation {animation:?} scales the joint {:?}{more} to 0 at {time:.2} s, which hair cannot follow; the scale before it is kept",
+            skeleton.joints[joint].name
+        ))
+    }
 }
 
 impl LeftOut {

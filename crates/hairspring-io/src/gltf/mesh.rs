@@ -7,7 +7,7 @@ use super::{
     morph,
     skeleton::{Skeleton, SkinPlace},
 };
-use crate::{Place, Problem, bytes::with_room, obj::DEFAULT_COLOR, skin::four_heaviest, text};
+use crate::{Place, Problem, bytes::with_room, color, obj::DEFAULT_COLOR, skin::four_heaviest, text};
 use glam::{Affine3A, Mat3A, Vec2, Vec3};
 use hairspring::body::{Mesh, Part};
 use std::collections::{HashMap, HashSet};
@@ -69,6 +69,7 @@ pub(super) fn read(
     }
     build.left_out.note(notes);
     let Build { mut mesh, joints, weights, .. } = build;
+    notes.extend(color::into_range(&mut mesh.colors));
     if mesh.normals.contains(&Vec3::ZERO) {
         let given = std::mem::take(&mut mesh.normals);
         mesh.compute_normals();
@@ -223,8 +224,10 @@ impl<'a> Build<'a> {
             self.mesh.uvs.resize(first + count, Vec2::ZERO);
         }
         // Colors are not needed to draw or to simulate: those that cannot be read are left out.
-        let colors = primitive.attributes.color.and_then(|color| colors(document, color, buffers).ok());
-        if let Some(colors) = colors.filter(|colors| colors.len() == count) {
+        let read = primitive.attributes.color.map(|color| colors(document, color, buffers).ok());
+        let right = read.as_ref().and_then(Option::as_ref).filter(|colors| colors.len() == count);
+        self.left_out.colors += usize::from(read.is_some() && right.is_none());
+        if let Some(colors) = right {
             self.mesh.colors.resize(first, Vec3::ZERO);
             self.mesh.colors.extend(colors);
         } else if !self.mesh.colors.is_empty() {
@@ -368,7 +371,10 @@ impl<'a> Build<'a> {
         // Strips and fans: glTF 2.0 §3.7.2.1. A triangle of a strip with two equal corners joins two strips.
         let is_area = |t: &[u32; 3]| t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
         match mode {
-            4 => triangles.extend(indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]])),
+            4 => {
+                self.left_out.incomplete += usize::from(!indices.len().is_multiple_of(3));
+                triangles.extend(indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]));
+            }
             5 => {
                 let strip = indices.windows(3).enumerate();
                 let strip =

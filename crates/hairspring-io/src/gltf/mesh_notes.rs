@@ -13,6 +13,10 @@ pub(super) struct LeftOut {
     pub unweighted: usize,
     /// Vertices that follow more than four joints.
     pub crowded: usize,
+    /// Primitives of triangles with a number of indices that is no multiple of three.
+    pub incomplete: usize,
+    /// Primitives whose colors cannot be read, or are not one for each vertex.
+    pub colors: usize,
 }
 
 impl LeftOut {
@@ -37,6 +41,14 @@ impl LeftOut {
         note(
             self.unweighted,
             "vertices of skinned meshes have no weight and follow one joint; weight them in the modeling program",
+        );
+        note(
+            self.incomplete,
+            "primitives end with an incomplete triangle, which is left out; export the file again",
+        );
+        note(
+            self.colors,
+            "primitives have a COLOR_0 that is not one color of three or four components for each vertex; it is left out",
         );
         note(
             self.crowded,

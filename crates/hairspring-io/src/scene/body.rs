@@ -6,8 +6,8 @@ use super::{
     sentence::unknown,
 };
 use crate::{Character, ReadOptions, Result, load, makehuman, obj, read_body, units};
-use glam::{Affine3A, Mat3A};
-use hairspring::body::{Body, Joint, Part, Skin};
+use glam::{Affine3A, Mat3A, Vec3};
+use hairspring::body::{Body, Joint, Mesh, Part, Skin};
 
 impl Reader<'_> {
     /// Reads a `[body]` or `[collision]` with its additional files. `what` names it in error messages.
@@ -17,6 +17,10 @@ impl Reader<'_> {
             if what != "body" {
                 let text = "`vertex_cache` is for [body] only; other meshes move with its joints".into();
                 return Err(self.wrong(named.file.span().start, "vertex_cache", text));
+            }
+            if !named.more.is_empty() {
+                let text = "`vertex_cache` moves the vertices of a body of one file; join the files of [[body.more]] to it in the program that made them";
+                return Err(self.wrong(named.file.span().start, "vertex_cache", text.into()));
             }
             character.vertex_cache = Some(self.vertex_cache(named, cache, &character.body)?);
         }
@@ -58,6 +62,10 @@ impl Reader<'_> {
             place(body, transform.to_affine());
         }
         if let Some(parts) = &named.parts {
+            if parts.is_empty() {
+                let text = "`parts` must name at least one part of the file; omit it to keep all";
+                return Err(self.wrong(named.file.span().start, "parts", text.into()));
+            }
             let known: Vec<String> = body.mesh.parts.iter().map(|p| p.name.clone()).collect();
             if let Some(wrong) = parts.iter().find(|p| !known.contains(p)) {
                 let text = format!("the part {}", unknown(wrong, known.iter().map(String::as_str)));
@@ -72,6 +80,11 @@ impl Reader<'_> {
             }
             body.keep_parts(is_kept);
             character.morphs.keep(&used);
+        }
+        // Hair collides with both sides of a sheet.
+        if what != "sheet" && turn_outward(&mut body.mesh) {
+            let note = "its triangles face inward; they are turned round, so that hair stays outside";
+            self.note(&path, vec![note.into()]);
         }
         // Every file of a body gets at least one part, so that each keeps its own color.
         if body.mesh.parts.is_empty() {
@@ -123,6 +136,12 @@ impl Reader<'_> {
         let rest: Vec<Affine3A> = body.world(&body.rest_pose());
         let inverse_bind: Vec<Affine3A> = rest.iter().map(|w| w.inverse()).collect();
         let of = |name: &str| self.joint(body, name, named);
+        // A glTF file without a skin has joints: its objects. The body rarely knows them.
+        let one_joint = |skin: &Skin| skin.weights.iter().all(|w| w[0] == 1.0);
+        let strange = collision.joints.iter().all(|joint| body.joint(&joint.name).is_none());
+        if strange && collision.skin.as_ref().is_some_and(one_joint) {
+            collision.skin = None;
+        }
         collision.skin = match (&collision.skin, &named.joint) {
             // A mesh that is skinned to its own joints uses the body's joints of the same names.
             (Some(skin), None) => {
@@ -193,6 +212,35 @@ fn place(body: &mut Body, by: Affine3A) {
         // A mirror image has its triangles the other way round.
         mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
     }
+}
+
+/// Volume below which a mesh counts as open, over that of a ball with its area [1].
+const OPEN: f32 = 0.05;
+
+/// Turns all triangles of a mesh round if it encloses its volume from inside. Returns whether it did.
+fn turn_outward(mesh: &mut Mesh) -> bool {
+    let center = mesh.positions.iter().sum::<Vec3>() / mesh.positions.len().max(1) as f32;
+    let (mut volume, mut area) = (0.0f64, 0.0f64);
+    for [a, b, c] in mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize] - center)) {
+        volume += f64::from(a.dot(b.cross(c))) / 6.0;
+        area += f64::from((b - a).cross(c - a).length()) / 2.0;
+    }
+    // A ball of the area A has the volume A^(3/2) / (6 √π).
+    let ball = area.powf(1.5) / (6.0 * std::f64::consts::PI.sqrt());
+    if volume >= -f64::from(OPEN) * ball {
+        return false;
+    }
+    let inward = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|v| mesh.positions[v as usize]);
+        let normals: Vec3 = t.iter().filter_map(|v| mesh.normals.get(*v as usize)).sum();
+        (b - a).cross(c - a).dot(normals) > 0.0
+    };
+    // The normals are those of the triangles, or were right already.
+    if mesh.triangles.iter().filter(|t| inward(t)).count() > mesh.triangles.len() / 2 {
+        mesh.normals.iter_mut().for_each(|n| *n = -*n);
+    }
+    mesh.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    true
 }
 
 /// Turns a body into one rigid piece that a clip of one joint moves.

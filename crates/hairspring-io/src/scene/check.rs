@@ -3,7 +3,7 @@
 use super::{
     air::{self, lines},
     file::{BodyFile, BuiltinFile, ClipFile, KeyFile, PropFile, SceneFile},
-    groom_file::{GroomFile, Placement},
+    groom_file::{GroomFile, Placement, Reverse},
     map_file::{Channel, MapsFile},
     props,
     sentence::{line_at, line_of_key, line_of_setting},
@@ -78,6 +78,10 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
             ClipFile::check("facing", &clip.facing),
             ClipFile::check("rate", &clip.rate),
             check(clip.rate.is_none() || clip.file.is_some(), "rate", "given with a `file`"),
+            check(clip.scale.is_none() || clip.file.is_some(), "scale", "given with a `file`"),
+            check(clip.up.is_none() || clip.file.is_some(), "up", "given with a `file`"),
+            check(clip.name.is_none() || keys.is_empty(), "name", "omitted if there are `keys`"),
+            check(clip.start == 0 || keys.is_empty(), "start", "omitted if there are `keys`"),
             check(
                 clip.pivot.is_none() || clip.joint.is_some() || !keys.is_empty(),
                 "pivot",
@@ -94,6 +98,20 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         ];
         first_failure(text, section("[clip]"), &checks)?;
     }
+    if let Some(body) = scene.body.as_ref().filter(|body| body.vertex_cache.is_some()) {
+        let alone =
+            "omitted if there is a [clip] or a [[prop]]: the vertices of the body have a motion already";
+        let checks = [check(scene.clip.is_none() && scene.prop.is_empty(), "vertex_cache", alone)];
+        first_failure(text, line_at(text, body.file.span().start), &checks)?;
+    }
+    for body in scene.body.iter().chain(&scene.collision).chain(&scene.sheet) {
+        let checks = [check(
+            body.vertex_rate.is_none() || body.vertex_cache.is_some(),
+            "vertex_rate",
+            "given with a `vertex_cache`",
+        )];
+        first_failure(text, line_at(text, body.file.span().start), &checks)?;
+    }
     props::ranges(text, scene)?;
     for groom in &scene.groom {
         let from = line_at(text, groom.start());
@@ -103,6 +121,17 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
         in_range(text, from, &groom.effects)?;
         in_range(text, from, &groom.thicken)?;
         maps(text, &groom.maps, groom.grow.is_some())?;
+        if groom.grow.is_some() {
+            let of_a_file = [
+                ("scale", groom.scale.is_none()),
+                ("up", groom.up.is_none()),
+                ("reverse", groom.reverse == Reverse::None),
+                ("bones", groom.bones.is_none()),
+            ];
+            let checks =
+                of_a_file.map(|(key, absent)| check(absent, key, "omitted if hair is grown (`grow`)"));
+            first_failure(text, from, &checks)?;
+        }
         if let Some(grow) = &groom.grow {
             let from = line_at(text, grow.span().start);
             in_range(text, from, &grow.get_ref().growth())?;

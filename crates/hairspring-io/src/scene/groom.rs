@@ -4,12 +4,14 @@ use super::{
     Reader,
     file::FileName,
     groom_file::{ColorSource, GroomFile, Reverse},
+    material,
 };
 use crate::{
     ReadOptions, Result,
     load::read_groom_on,
     read_bones,
     skin_distance::{SkinDistance, reverse_to_skin, unit_on_skin},
+    text,
     tfxbone::RootBones,
     units::{FitUnit, extent},
 };
@@ -20,6 +22,7 @@ use hairspring::{
     material::Material,
 };
 use hairspring_scene::HairLook;
+use std::collections::{BTreeSet, HashSet};
 
 /// The surface of the body that strands are placed on.
 struct Skin<'a> {
@@ -77,8 +80,13 @@ impl Reader<'_> {
         }
         if let Some(bones) = &named.bones {
             let read = self.named(read_bones(&self.resolve(bones)), bones, "bone file")?;
-            self.bind_by_bones(&mut groom, &read, body, named.thicken.copies)
+            let note = bind_by_bones(&mut groom, &read, body, named.thicken.copies)
                 .map_err(|text| self.wrong(bones.span().start, "bones", text))?;
+            self.note(&self.resolve(bones), note.into_iter().collect());
+        }
+        let groups = groom.groups.iter().max().map_or(1, |last| *last as usize + 1);
+        if let (Some(file), Some(note)) = (&named.file, material::of_groups(materials.len(), groups)) {
+            self.note(&self.resolve(file), vec![note]);
         }
         // A material's radius replaces the groom's from here on, so that hair is drawn as thick as it is
         // simulated.
@@ -126,45 +134,54 @@ impl Reader<'_> {
         self.repairs.non_finite_points += r.non_finite_points;
         self.repairs.zero_segments += r.zero_segments;
         self.repairs.short_strands += r.short_strands;
+        self.repairs.empty_strands += r.empty_strands;
         self.repairs.bad_radii += r.bad_radii;
         self.repairs.folds += r.folds;
         Ok(loaded.value)
     }
+}
 
-    /// Binds each root to skin that follows one of its bones. Copies of a strand use the bones of that
-    /// strand.
-    fn bind_by_bones(
-        &self,
-        groom: &mut Groom,
-        bones: &RootBones,
-        body: Option<&Body>,
-        copies: u32,
-    ) -> std::result::Result<(), String> {
-        let Some((body, skin)) = body.and_then(|b| b.skin.as_ref().map(|s| (b, s))) else {
-            return Err("`bones` needs a skinned [body]".into());
-        };
-        let copies = 1 + copies as usize;
-        if bones.bones.len() * copies != groom.strand_count() {
-            let (n, strands) = (bones.bones.len(), groom.strand_count() / copies);
-            return Err(format!(
-                "the file holds the bones of {n} roots, but the groom has {strands} strands"
-            ));
-        }
-        let joint: Vec<Option<u16>> = bones.names.iter().map(|n| body.joint(n).map(|j| j as u16)).collect();
-        let of_root = |s: usize| {
-            let s = s % bones.bones.len();
-            let pairs = bones.bones[s].iter().zip(bones.weights[s]);
-            pairs.filter(|(_, w)| *w > 0.0).filter_map(|(b, _)| joint[*b as usize])
-        };
-        let follows = |t: usize, j: u16| {
-            let corners = body.mesh.triangles[t].iter().map(|v| *v as usize);
-            corners
-                .flat_map(|v| skin.joints[v].into_iter().zip(skin.weights[v]))
-                .any(|(k, w)| k == j && w > 0.0)
-        };
-        bind_roots_where(groom, &body.mesh, |s, t| of_root(s).any(|j| follows(t, j)));
-        Ok(())
+/// Binds each root to skin that follows one of its bones. Copies of a strand use the bones of that
+/// strand.
+fn bind_by_bones(
+    groom: &mut Groom,
+    bones: &RootBones,
+    body: Option<&Body>,
+    copies: u32,
+) -> std::result::Result<Option<String>, String> {
+    let Some((body, skin)) = body.and_then(|b| b.skin.as_ref().map(|s| (b, s))) else {
+        return Err("`bones` needs a skinned [body]".into());
+    };
+    let copies = 1 + copies as usize;
+    if bones.bones.len() * copies != groom.strand_count() {
+        let (n, strands) = (bones.bones.len(), groom.strand_count() / copies);
+        return Err(format!("the file holds the bones of {n} roots, but the groom has {strands} strands"));
     }
+    let weighted = |(joints, weights): (&[u16; 4], &[f32; 4])| {
+        (0..4).filter(|k| weights[*k] > 0.0).map(|k| joints[k]).collect::<Vec<_>>()
+    };
+    let moving: HashSet<u16> = skin.joints.iter().zip(&skin.weights).flat_map(weighted).collect();
+    let joint = |name: &String| body.joint(name).map(|j| j as u16).filter(|j| moving.contains(j));
+    let joint: Vec<Option<u16>> = bones.names.iter().map(joint).collect();
+    let of_root = |s: usize| {
+        let s = s % bones.bones.len();
+        weighted((&bones.bones[s], &bones.weights[s])).into_iter().filter_map(|b| joint[b as usize])
+    };
+    let follows = |t: usize, j: u16| {
+        let corners = body.mesh.triangles[t].iter().map(|v| *v as usize);
+        corners.flat_map(|v| skin.joints[v].into_iter().zip(skin.weights[v])).any(|(k, w)| k == j && w > 0.0)
+    };
+    bind_roots_where(groom, &body.mesh, |s, t| of_root(s).any(|j| follows(t, j)));
+
+    let used: BTreeSet<u16> = bones.bones.iter().zip(&bones.weights).flat_map(weighted).collect();
+    let without: Vec<u16> = used.into_iter().filter(|b| joint[*b as usize].is_none()).collect();
+    let Some(first) = without.first() else { return Ok(None) };
+    let lost = (0..bones.bones.len()).filter(|s| of_root(*s).next().is_none()).count();
+    Ok(Some(format!(
+        "{} bones, such as {:?}, move no skin of the body; {lost} roots that follow only these are bound to the nearest skin",
+        without.len(),
+        text::name(&bones.names[*first as usize]),
+    )))
 }
 
 /// Whether a look has other colors than by default.

@@ -26,6 +26,13 @@ pub(super) fn named(
     let names: &[String] = match named {
         None => &[],
         Some(OneOrMore::One(name)) => std::slice::from_ref(name),
+        Some(OneOrMore::More(names)) if names.is_empty() => {
+            let line = line_of_key(text, line_at(text, start), "material").unwrap_or(1);
+            return Err(Problem::line(
+                line,
+                "`material` must name at least one material; omit it for the default",
+            ));
+        }
         Some(OneOrMore::More(names)) => names,
     };
     let known = || scene.material.keys().map(String::as_str).chain(material::PRESETS);
@@ -40,6 +47,35 @@ pub(super) fn named(
             }
         })
         .collect()
+}
+
+/// Notes about materials that no groom uses.
+pub(super) fn unused(scene: &SceneFile) -> Option<String> {
+    let named = scene.groom.iter().filter_map(|groom| groom.material.as_ref());
+    let named = named.chain(scene.builtin.iter().filter_map(|builtin| builtin.material.as_ref()));
+    let used: Vec<&str> = named
+        .flat_map(|named| match named {
+            OneOrMore::One(name) => std::slice::from_ref(name),
+            OneOrMore::More(names) => names,
+        })
+        .map(String::as_str)
+        .collect();
+    let unused: Vec<String> = scene
+        .material
+        .keys()
+        .filter(|name| !used.contains(&name.as_str()))
+        .map(|name| format!("[material.{name}]"))
+        .collect();
+    (!unused.is_empty()).then(|| format!("no groom uses {}; name it in `material`", unused.join(", ")))
+}
+
+/// A note about a groom whose groups are more or fewer than the materials that it names.
+pub(super) fn of_groups(materials: usize, groups: usize) -> Option<String> {
+    let differ = materials > 1 && materials != groups;
+    let which =
+        if materials > groups { "the last ones are not used" } else { "the last one is used for the rest" };
+    differ
+        .then(|| format!("the groom has {groups} groups and `material` names {materials} materials; {which}"))
 }
 
 /// Returns a `[material.NAME]`: its preset, overridden by the given fields.

@@ -61,6 +61,7 @@ pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
     let mut reader = Reader::new(path, text);
     let mut scene = reader.settings(&file)?;
     reader.geometry(&file, &mut scene)?;
+    reader.notes.extend(material::unused(&file));
     let Reader { repairs, notes, .. } = reader;
     Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs, notes: load::plain(notes) })
 }

@@ -3,9 +3,10 @@
 use super::{
     Reader,
     file::{BodyFile, FileName},
+    groom_file::Placement,
 };
 use crate::{Format, ReadOptions, Result, load, motion::MAX_POSITIONS, pc2, read_body, units};
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use hairspring::body::Body;
 use hairspring_scene::VertexCache;
 use std::path::{Path, PathBuf};
@@ -25,11 +26,15 @@ impl Reader<'_> {
         let near = cache.span().start;
         let wrong = |text: String| self.wrong(near, "vertex_cache", text);
         let vertices = body.mesh.positions.len();
+        // The frames of the file are in the place of its mesh before `transform`.
+        let transform = named.transform.map_or(Affine3A::IDENTITY, Placement::to_affine);
+        let before = transform.inverse();
+        let unplaced: Vec<Vec3> = body.mesh.positions.iter().map(|p| before.transform_point3(*p)).collect();
         let (frames, rate) = if Format::of(&path) == Some(Format::Pc2) {
             let data = self.named(load::bytes_of(&path), cache, "vertex cache")?;
             let read = pc2::parse(&data).map_err(|p| p.in_file(&path))?;
             // A file without a unit has that of the mesh, which may have been guessed.
-            let scale = named.scale.or_else(|| scale_of(read.samples.first()?, &body.mesh.positions));
+            let scale = named.scale.or_else(|| scale_of(read.samples.first()?, &unplaced));
             let turn = units::turn_of(named.up.unwrap_or(crate::Axis::Y));
             let place = |p: Vec3| turn * (p * scale.unwrap_or(1.0));
             let frames = read.samples.into_iter().map(|s| s.into_iter().map(place).collect()).collect();
@@ -66,8 +71,7 @@ impl Reader<'_> {
                         "the files hold more than {MAX_POSITIONS} positions; shorten the motion"
                     )));
                 }
-                let scale = *scale
-                    .get_or_insert_with(|| scale_of(&read.positions, &body.mesh.positions).unwrap_or(1.0));
+                let scale = *scale.get_or_insert_with(|| scale_of(&read.positions, &unplaced).unwrap_or(1.0));
                 read.positions.iter_mut().for_each(|p| *p *= scale);
                 frames.push(read.positions);
             }
@@ -80,6 +84,10 @@ impl Reader<'_> {
             );
             return Err(wrong(text));
         }
+        let frames = frames
+            .into_iter()
+            .map(|frame| frame.into_iter().map(|p| transform.transform_point3(p)).collect())
+            .collect::<Vec<Vec<Vec3>>>();
         let rate = rate * named.vertex_rate.unwrap_or(RATE);
         let note = format!("{} frames at {rate} Hz move the body's vertices", frames.len());
         self.note(&path, vec![note]);

@@ -12,3 +12,4 @@ mod scene_file_errors_name_line_and_remedy;
 mod scene_files_give_the_scene_they_describe;
 mod scene_page_is_correct;
 mod settings_are_read_apart_from_geometry;
+mod what_a_scene_cannot_use_is_reported;

@@ -90,6 +90,43 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         ),
         (format!("[body]\nfile = \"head.obj\"\nrig = \"x.json\"\n{GROOM}"), &["line 3", "`weights`"]),
         (format!("{GROOM}[clip]\nfile = \"nod.bvh\"\n"), &["line 4", "no [body]"]),
+        (format!("{GROOM}material = []\n"), &["line 3", "`material` must name at least one"]),
+        (
+            format!("[body]\nfile = \"head.obj\"\nparts = []\n{GROOM}"),
+            &["line 3", "`parts` must name at least one"],
+        ),
+        (
+            format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nkeys = [{{ time = 1 }}]\nname = \"nod\"\n"),
+            &["line 7", "`name` must be omitted if there are `keys`"],
+        ),
+        (
+            format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nkeys = [{{ time = 1 }}]\nstart = 2\n"),
+            &["line 7", "`start` must be omitted"],
+        ),
+        (
+            format!("[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nkeys = [{{ time = 1 }}]\nup = \"z\"\n"),
+            &["line 7", "`up` must be given with a `file`"],
+        ),
+        (
+            format!(
+                "[body]\nfile = \"head.obj\"\nvertex_cache = \"a.pc2\"\n{GROOM}[clip]\nkeys = [{{ time = 1 }}]\n"
+            ),
+            &["line 3", "`vertex_cache` must be omitted if there is a [clip]"],
+        ),
+        (
+            format!(
+                "[body]\nfile = \"head.obj\"\nvertex_cache = \"head.#.obj\"\n[[body.more]]\nfile = \"head.obj\"\n{GROOM}"
+            ),
+            &["line 3", "body of one file"],
+        ),
+        (
+            format!("[body]\nfile = \"head.obj\"\nvertex_rate = 30\n{GROOM}"),
+            &["line 3", "`vertex_rate` must be given with a `vertex_cache`"],
+        ),
+        (
+            format!("[body]\nfile = \"head.obj\"\n[[groom]]\ngrow = {{ strands = 5 }}\nreverse = true\n"),
+            &["line 5", "`reverse` must be omitted if hair is grown"],
+        ),
         (
             format!(
                 "[body]\nfile = \"head.obj\"\n{GROOM}[clip]\nfile = \"nod.bvh\"\njoint = \"Haed\"\npivot = [0, 0, 0]\n"

@@ -40,10 +40,13 @@ pub(super) fn thicknesses(mesh: &Mesh, spacing: f32, skip: f32) -> Vec<(Place, f
     if !mesh.positions.iter().all(|p| p.is_finite()) {
         return Vec::new();
     }
-    let vertices = mesh.positions.iter().map(|p| p.to_array().into()).collect();
+    // Relative to the mesh, so that a ray starts below its triangle far from the origin too.
+    let origin = mesh.positions.first().copied().unwrap_or_default();
+    let vertices = mesh.positions.iter().map(|p| (*p - origin).to_array().into()).collect();
     let Ok(solid) = TriMesh::new(vertices, mesh.triangles.clone()) else { return Vec::new() };
     let thickness = |place: Place| {
-        let (_, middle, normal) = place;
+        let (triangle, _, normal) = place;
+        let middle = mesh.corners(triangle as usize).iter().map(|p| *p - origin).sum::<Vec3>() / 3.0;
         // Starts just below the surface, so that the ray does not hit the triangle itself.
         let from = middle - normal * skip;
         let ray = Ray::new(from.to_array().into(), (-normal).to_array().into());

@@ -13,9 +13,12 @@ pub struct Repairs {
     pub non_finite_points: usize,
     /// Segments below the minimum length, whose points were spread out along the strand.
     pub zero_segments: usize,
-    /// Strands with fewer than three points, which were given intermediate points. A single point becomes a
-    /// stub of 1 mm along +Y.
+    /// Strands with one or two points, which were given intermediate points. A single point becomes a stub of 1 mm
+    /// along +Y.
     pub short_strands: usize,
+    /// Strands without any finite point. Each becomes a stub at the root of the strand before it, or of the first one
+    /// that has a finite point.
+    pub empty_strands: usize,
     /// Radii that were not positive and finite, replaced by the strand's mean or by the default.
     pub bad_radii: usize,
     /// Joints at which a strand turns by more than 150°. They are counted, not changed.
@@ -25,7 +28,7 @@ pub struct Repairs {
 impl Repairs {
     /// Returns the total number of repairs.
     pub fn total(&self) -> usize {
-        self.non_finite_points + self.zero_segments + self.short_strands + self.bad_radii
+        self.non_finite_points + self.zero_segments + self.short_strands + self.empty_strands + self.bad_radii
     }
 }
 
@@ -60,14 +63,39 @@ pub fn sanitize(groom: &mut Groom) -> Repairs {
     }
     lengthen_short_strands(groom, &mut repairs);
     groom.radii.resize(groom.points.len(), f32::NAN);
+    let mut empty = Vec::new();
     for s in 0..groom.strand_count() {
         let range = groom.range(s);
+        repairs.bad_radii += mend_radii(&mut groom.radii[range.clone()]);
+        if !groom.strand(s).iter().any(is_usable) {
+            empty.push(s);
+            continue;
+        }
         repairs.non_finite_points += fill_non_finite(&mut groom.points[range.clone()]);
         repairs.zero_segments += spread_zero_segments(&mut groom.points[range.clone()]);
-        repairs.folds += folds(&groom.points[range.clone()]);
-        repairs.bad_radii += mend_radii(&mut groom.radii[range]);
+        repairs.folds += folds(&groom.points[range]);
     }
+    repairs.empty_strands = empty.len();
+    place_empty_strands(groom, &empty);
     repairs
+}
+
+/// Places the strands `empty`, in order, as stubs where another strand has its root. Elsewhere they would widen the
+/// bounds of the groom.
+fn place_empty_strands(groom: &mut Groom, empty: &[usize]) {
+    let first = (0..groom.strand_count()).find(|s| empty.binary_search(s).is_err());
+    let first = first.map_or(Vec3::ZERO, |s| groom.strand(s)[0]);
+    for &s in empty {
+        let root = s.checked_sub(1).map_or(first, |before| groom.strand(before)[0]);
+        let points = groom.range(s);
+        groom.points[points.clone()].fill(root);
+        stub(&mut groom.points[points]);
+    }
+}
+
+/// Returns whether a point is finite and within [`MAX_COORDINATE`].
+fn is_usable(p: &Vec3) -> bool {
+    p.is_finite() && p.abs().max_element() <= MAX_COORDINATE
 }
 
 /// Counts the joints that turn by more than 150°.
@@ -79,8 +107,8 @@ fn folds(points: &[Vec3]) -> usize {
 
 /// Adds the missing points to strands with fewer than three, by resampling every per-point array.
 fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
-    repairs.short_strands = groom.offsets.windows(2).filter(|w| w[1] - w[0] < 3).count();
-    if repairs.short_strands == 0 {
+    repairs.short_strands = groom.offsets.windows(2).filter(|w| matches!(w[1] - w[0], 1 | 2)).count();
+    if !groom.offsets.windows(2).any(|w| w[1] - w[0] < 3) {
         return;
     }
     let old = std::mem::take(groom);
@@ -100,8 +128,7 @@ fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
             _ => range.clone().map(|i| (i, i, 0.0)).collect(),
         };
         if places.is_empty() {
-            // A strand without points has no position either: it becomes a stub at the origin.
-            groom.points.extend([Vec3::ZERO; 3]);
+            groom.points.extend([Vec3::NAN; 3]);
             groom.radii.extend([DEFAULT_RADIUS; 3].iter().filter(|_| has_radii));
             groom.colors.extend([Vec3::ZERO; 3].iter().filter(|_| has_colors));
         }
@@ -126,19 +153,15 @@ fn lengthen_short_strands(groom: &mut Groom, repairs: &mut Repairs) {
 }
 
 /// Repairs points that are not finite or beyond [`MAX_COORDINATE`]. They move onto the line between their
-/// finite neighbors; at the ends, they continue the strand. A strand without a finite point moves to the
-/// origin. Returns the number of repaired points.
+/// finite neighbors; at the ends, they continue the strand. At least one must be finite. Returns the number of repaired
+/// points.
 fn fill_non_finite(points: &mut [Vec3]) -> usize {
-    let good = |p: &Vec3| p.is_finite() && p.abs().max_element() <= MAX_COORDINATE;
-    let finite: Vec<usize> = (0..points.len()).filter(|i| good(&points[*i])).collect();
+    let finite: Vec<usize> = (0..points.len()).filter(|i| is_usable(&points[*i])).collect();
     let bad = points.len() - finite.len();
     if bad == 0 {
         return 0;
     }
-    let (Some(&first), Some(&last)) = (finite.first(), finite.last()) else {
-        points.fill(Vec3::ZERO);
-        return bad;
-    };
+    let (first, last) = (finite[0], finite[finite.len() - 1]);
     for w in finite.windows(2) {
         let (a, b) = (points[w[0]], points[w[1]]);
         let steps = (w[1] - w[0]) as f32;
@@ -319,12 +342,24 @@ mod tests {
         let mut groom = Groom::from_strands(strands, 4e-5);
         groom.colors = groom.points.clone();
         let repairs = sanitize(&mut groom);
-        assert_eq!((repairs.short_strands, repairs.bad_radii), (3, 0));
+        assert_eq!((repairs.short_strands, repairs.empty_strands, repairs.bad_radii), (2, 1, 0));
+        assert_eq!(groom.strand(1)[0], Vec3::X, "an empty strand is not at the root before it");
         assert_eq!(groom.offsets, [0, 3, 6, 9, 12]);
         assert_eq!(groom.strand(0)[0], Vec3::X);
         assert!((groom.strand_length(0) - STUB).abs() < 1e-6);
         assert_eq!(groom.strand(2), [Vec3::ZERO, Vec3::Y * 0.5, Vec3::Y]);
         assert_eq!((groom.radii.len(), groom.colors.len()), (12, 12));
+    }
+
+    #[test]
+    fn strands_without_a_finite_point_do_not_change_the_bounds() {
+        let good = [Vec3::ONE, Vec3::ONE * 1.1, Vec3::ONE * 1.2];
+        let mut groom = Groom::from_strands([&[Vec3::NAN; 4][..], &[], &good, &[Vec3::NAN]], 4e-5);
+        let repairs = sanitize(&mut groom);
+        assert_eq!((repairs.empty_strands, repairs.total()), (3, 4), "{repairs:?}");
+        for s in [0, 1, 3] {
+            assert_eq!(groom.strand(s)[0], Vec3::ONE, "strand {s}");
+        }
     }
 
     #[test]

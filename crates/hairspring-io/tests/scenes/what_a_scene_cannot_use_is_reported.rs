@@ -1,0 +1,137 @@
+//! Promise: what a scene repairs, leaves out or cannot use is reported once, with the name of its file.
+//!
+//! A wrong result without a word costs a day. Each test has a file that looks right in another program.
+
+use crate::scenes::{folder, read};
+use glam::Vec3;
+use hairspring::groom::Groom;
+use hairspring_io::write_groom;
+use hairspring_scene::{Scene, stage::Stage};
+use std::fs;
+
+const GROOM: &str = "[[groom]]\nfile = \"hair.data\"\nscale = 1.0\n";
+
+/// A box of 20 cm below the hair, whose faces look outward or inward.
+fn cube(inward: bool, at: Vec3) -> String {
+    let mut text = String::new();
+    for k in 0..8 {
+        let corner = at + Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, (k >> 2) as f32) * 0.2;
+        text += &format!("v {} {} {}\n", corner.x, corner.y, corner.z);
+    }
+    for mut face in [[1, 3, 4, 2], [5, 6, 8, 7], [1, 2, 6, 5], [3, 7, 8, 4], [1, 5, 7, 3], [2, 4, 8, 6]] {
+        if inward {
+            face.reverse();
+        }
+        text += &format!("f {} {} {} {}\n", face[0], face[1], face[2], face[3]);
+    }
+    text
+}
+
+/// The notes of a scene that contain `words`.
+fn notes(notes: &[String], words: &str) -> usize {
+    notes.iter().filter(|note| note.contains(words)).count()
+}
+
+#[test]
+fn a_body_whose_triangles_face_inward_is_turned_round() {
+    let folder = folder();
+    let text = format!("[body]\nfile = \"box.obj\"\nscale = 1.0\n{GROOM}");
+    let mut bodies = Vec::new();
+    for inward in [false, true] {
+        fs::write(folder.path().join("box.obj"), cube(inward, Vec3::ZERO)).unwrap();
+        let loaded = read(folder.path(), &text).unwrap();
+        assert_eq!(
+            notes(&loaded.notes, "box.obj: its triangles face inward"),
+            inward as usize,
+            "{:?}",
+            loaded.notes
+        );
+        bodies.push(loaded.value.body.unwrap().mesh);
+    }
+    let [right, turned] = &bodies[..] else { panic!() };
+    for (a, b) in right.normals.iter().zip(&turned.normals) {
+        assert!(a.distance(*b) < 1e-5, "{a} {b}");
+    }
+    // An open mesh has no inside.
+    fs::write(folder.path().join("box.obj"), "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n").unwrap();
+    let loaded = read(folder.path(), &text).unwrap();
+    assert_eq!(notes(&loaded.notes, "inward"), 0, "{:?}", loaded.notes);
+}
+
+#[test]
+fn a_mesh_far_from_the_origin_is_not_thin() {
+    let folder = folder();
+    let at = Vec3::new(200.0, 0.0, 0.0);
+    fs::write(folder.path().join("box.obj"), cube(false, at)).unwrap();
+    let strand = [0.0, 0.1, 0.2].map(|y| at + Vec3::new(0.1, 0.2 + y, 0.1));
+    write_groom(&folder.path().join("hair.data"), &Groom::from_strands([strand], 4e-5)).unwrap();
+    let text = format!("[body]\nfile = \"box.obj\"\nscale = 1.0\n{GROOM}");
+    let stage = Stage::new(read(folder.path(), &text).unwrap().value).unwrap();
+    assert_eq!(stage.thin_mesh(), None);
+}
+
+#[test]
+fn the_transform_of_a_body_moves_its_vertex_cache_too() {
+    let folder = folder();
+    for k in 0..3 {
+        fs::write(folder.path().join(format!("box.{k}.obj")), cube(false, Vec3::Y * 0.1 * k as f32)).unwrap();
+    }
+    let text = format!(
+        "[body]\nfile = \"box.0.obj\"\nscale = 1.0\nvertex_cache = \"box.#.obj\"\ntransform = {{ position = [0.5, 0, 0], scale = [3, 3, 3] }}\n{GROOM}"
+    );
+    let Scene { body, vertex_cache, .. } = read(folder.path(), &text).unwrap().value;
+    let (mesh, frames) = (body.unwrap().mesh, vertex_cache.unwrap().frames);
+    for (k, frame) in frames.iter().enumerate() {
+        for (moved, rest) in frame.iter().zip(&mesh.positions) {
+            assert!(moved.distance(*rest + Vec3::Y * 0.3 * k as f32) < 1e-5, "frame {k}: {moved}, {rest}");
+        }
+    }
+}
+
+#[test]
+fn strands_without_points_stay_beside_the_others() {
+    let folder = folder();
+    let at = Vec3::splat(3.0);
+    let good = [0.0, 0.1, 0.2].map(|y| at + Vec3::Y * y);
+    let lost = [Vec3::NAN; 3];
+    write_groom(&folder.path().join("hair.data"), &Groom::from_strands([good, lost], 4e-5)).unwrap();
+    let loaded = read(folder.path(), GROOM).unwrap();
+    assert_eq!(notes(&loaded.notes, "hair.data: 1 strands have no finite point"), 1, "{:?}", loaded.notes);
+    assert_eq!(loaded.value.grooms[0].groom.strand(1)[0], at);
+}
+
+#[test]
+fn repairs_name_the_groom() {
+    let folder = folder();
+    let strand = |x: f32| [Vec3::X * x, Vec3::X * x, Vec3::new(x, 0.1, 0.0)];
+    write_groom(&folder.path().join("other.data"), &Groom::from_strands([strand(0.0), strand(1.0)], 4e-5))
+        .unwrap();
+    let text = format!("{GROOM}[[groom]]\nfile = \"other.data\"\nscale = 1.0\n");
+    let loaded = read(folder.path(), &text).unwrap();
+    assert_eq!(notes(&loaded.notes, "other.data: repaired 2 segments"), 1, "{:?}", loaded.notes);
+    assert_eq!(notes(&loaded.notes, "repaired"), 1, "{:?}", loaded.notes);
+}
+
+#[test]
+fn materials_that_nothing_uses_are_named() {
+    let folder = folder();
+    let text = format!(
+        "{GROOM}material = [\"a\", \"wavy\"]\n[material.a]\nfriction = 0.1\n[material.b]\nfriction = 0.2\n"
+    );
+    let loaded = read(folder.path(), &text).unwrap();
+    assert_eq!(notes(&loaded.notes, "no groom uses [material.b]"), 1, "{:?}", loaded.notes);
+    assert_eq!(notes(&loaded.notes, "1 groups and `material` names 2"), 1, "{:?}", loaded.notes);
+    let loaded = read(folder.path(), &format!("{GROOM}material = \"wavy\"\n")).unwrap();
+    assert_eq!(notes(&loaded.notes, "material"), 0, "{:?}", loaded.notes);
+}
+
+#[test]
+fn vertex_colors_out_of_range_are_reported_and_used() {
+    let folder = folder();
+    let mesh = "v 0 0 0 255 0 0\nv 1 0 0 255 255 255\nv 1 0 -1 0 0 0\nv 0 0 -1 0 0 0\nf 1 2 3 4\n";
+    fs::write(folder.path().join("head.obj"), mesh).unwrap();
+    let text = format!("[body]\nfile = \"head.obj\"\nscale = 1.0\n{GROOM}");
+    let loaded = read(folder.path(), &text).unwrap();
+    assert_eq!(notes(&loaded.notes, "head.obj: colors of up to 255"), 1, "{:?}", loaded.notes);
+    assert_eq!(loaded.value.body.unwrap().mesh.colors[0], Vec3::X);
+}
