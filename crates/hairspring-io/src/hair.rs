@@ -4,7 +4,6 @@
 use crate::{
     Place, Problem,
     bytes::Bytes,
-    color,
     strands::{Read, Strands, gather_offsets},
     units::{Axis, FileUnits},
 };
@@ -93,7 +92,6 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     }
     if header.flags & HAS_COLORS != 0 {
         groom.colors = bytes.array(points, "the colors")?;
-        notes.extend(color::into_range(&mut groom.colors));
     }
     if bytes.remaining() > 0 {
         notes.push(format!(

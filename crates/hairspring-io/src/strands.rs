@@ -1,7 +1,7 @@
 //! The common output of all groom readers and the common input of all groom writers.
 
 use crate::{
-    Place, Problem, ReadOptions,
+    Place, Problem, ReadOptions, color,
     units::{FileUnits, FitUnit, apply_to_groom, settle_groom},
 };
 use glam::{Vec2, Vec3};
@@ -96,6 +96,7 @@ impl Read {
     /// Returns the groom in meters and Y up, the meters per file unit, and the notes. A unit that is neither
     /// given nor in the file is chosen by `fit`, or guessed from the sizes.
     pub fn finish(mut self, options: &ReadOptions, fit: Option<FitUnit<'_>>) -> (Groom, f32, Vec<String>) {
+        self.notes.extend(color::into_range(&mut self.groom.colors));
         let (scale, turn) = settle_groom(options, self.units, &self.groom, fit, &mut self.notes);
         apply_to_groom(&mut self.groom, scale, turn);
         self.groom.radii = match self.radii {

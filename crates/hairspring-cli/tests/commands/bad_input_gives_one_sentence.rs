@@ -68,7 +68,7 @@ fn numbered_names_must_be_valid_text() {
     let folder = tempfile::tempdir().unwrap();
     write_groom(folder.path(), 5);
     let output = std::ffi::OsStr::from_bytes(b"\xff.#.data");
-    let done = program(folder.path()).args(["bake", "groom.hair", "-o"]).arg(output).output().unwrap();
+    let done = program(folder.path(), &["bake", "groom.hair", "-o"]).arg(output).output().unwrap();
     let error = String::from_utf8_lossy(&done.stderr);
     assert!(done.status.code() == Some(2) && error.contains("not valid UTF-8"), "{error}");
 }

@@ -214,20 +214,26 @@ fn place(body: &mut Body, by: Affine3A) {
     }
 }
 
-/// Volume below which a mesh counts as open, over that of a ball with its area [1].
-const OPEN: f32 = 0.05;
+/// Volume below which a mesh counts as flat, over that of a ball with its area [1].
+const FLAT: f64 = 0.05;
 
-/// Turns all triangles of a mesh round if it encloses its volume from inside. Returns whether it did.
+/// Area of the openings from which on a mesh counts as open, over its own area [1]: a cap has 0.5, a bust 0.05.
+const OPEN: f32 = 0.2;
+
+/// Turns all triangles of a closed mesh round if they face inward. Returns whether it did.
 fn turn_outward(mesh: &mut Mesh) -> bool {
     let center = mesh.positions.iter().sum::<Vec3>() / mesh.positions.len().max(1) as f32;
-    let (mut volume, mut area) = (0.0f64, 0.0f64);
+    // The areas of a closed mesh, as vectors, add up to 0.
+    let (mut volume, mut area, mut openings) = (0.0f64, 0.0f64, Vec3::ZERO);
     for [a, b, c] in mesh.triangles.iter().map(|t| t.map(|v| mesh.positions[v as usize] - center)) {
         volume += f64::from(a.dot(b.cross(c))) / 6.0;
-        area += f64::from((b - a).cross(c - a).length()) / 2.0;
+        let across = (b - a).cross(c - a) / 2.0;
+        openings += across;
+        area += f64::from(across.length());
     }
     // A ball of the area A has the volume A^(3/2) / (6 √π).
     let ball = area.powf(1.5) / (6.0 * std::f64::consts::PI.sqrt());
-    if volume >= -f64::from(OPEN) * ball {
+    if volume >= -FLAT * ball || openings.length() > OPEN * area as f32 {
         return false;
     }
     let inward = |t: &[u32; 3]| {

@@ -26,14 +26,16 @@ fn error(file: &GltfFile) -> String {
     gltf::parse_groom(&file.glb(), &|_| None).unwrap_err().to_string()
 }
 
-/// Reads a groom from a file with these bytes, and its notes.
+/// Reads a groom from a file with these bytes, and the notes that are not about repairs of its strands.
 fn read(name: &str, bytes: &[u8]) -> (hairspring::groom::Groom, Vec<String>) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     fs::write(&path, bytes).unwrap();
     let loaded = read_groom(&path, &ReadOptions::default()).unwrap();
     assert_eq!((loaded.format, loaded.scale), (Format::Gltf, 1.0));
-    (loaded.value, loaded.notes)
+    let of_strands =
+        |note: &str| note.starts_with("repaired ") || note.contains(" joints bend by more than 150°");
+    (loaded.value, loaded.notes.into_iter().filter(|note| !of_strands(note)).collect())
 }
 
 #[test]
@@ -83,7 +85,7 @@ fn a_width_is_twice_the_radius_and_a_color_has_three_channels_or_four() {
         groom.colors,
         [Vec3::new(0.5, 0.25, 1.0), Vec3::new(0.5, 0.25, 0.0), Vec3::new(0.5, 0.25, 0.0)]
     );
-    assert!(notes.is_empty(), "{notes:?}");
+    assert_eq!(notes, ["1 colors outside of 0 to 1 are clipped"]);
 }
 
 #[test]
