@@ -124,7 +124,7 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
             &["line 3", "`vertex_rate` must be given with a `vertex_cache`"],
         ),
         (
-            format!("[body]\nfile = \"head.obj\"\n[[groom]]\ngrow = {{ strands = 5 }}\nreverse = true\n"),
+            "[body]\nfile = \"head.obj\"\n[[groom]]\ngrow = { strands = 5 }\nreverse = true\n".into(),
             &["line 5", "`reverse` must be omitted if hair is grown"],
         ),
         (
