@@ -81,6 +81,55 @@ def test_every_attribute_survives_a_round_trip(tmp_path, suffix):
     assert (guides == groom.guides).all() and (weights == groom.guide_weights).all()
 
 
+# The attributes of Unreal's groom schema 1.5, with their scope in Alembic and their interpolation in USD.
+UNREAL = {
+    "groom_group_id": "uni",
+    "groom_root_uv": "uni",
+    "groom_color": "vtx",
+    "groom_closest_guides": "uni",
+    "groom_guide_weights": "uni",
+    "groom_id": "uni",
+    "groom_width": "vtx",
+}
+
+
+def test_every_attribute_of_unreals_schema_has_its_name_and_scope_in_alembic(tmp_path):
+    groom, path = random_groom(), tmp_path / "a.abc"
+    writer = alembic.CurvesWriter(path, Description(24, 1, 1, [groom], "test"))
+    writer.frame(1, groom.points, np.zeros_like(groom.points))
+    writer.finish()
+    top = Abc.IArchive(str(path)).getTop()
+    own = {"groom_version_major": "con", "groom_version_minor": "con"}
+    for name, expected in (("my_hair", UNREAL | own), ("my_hair_guides", {"groom_guide": "con", "groom_id": "uni", "groom_width": "vtx"} | own)):
+        names = [child.getName() for child in top.children]
+        assert name in names, names
+        headers = AbcGeom.ICurves(top, name).getSchema().getArbGeomParams().propertyheaders
+        scopes = {h.getName(): h.getMetaData().serialize().split("geoScope=")[1].split(";")[0] for h in headers}
+        assert {key: scopes.get(key) for key in expected} == expected
+
+
+def test_every_attribute_of_unreals_schema_has_its_name_and_interpolation_in_usd(tmp_path):
+    pytest.importorskip("pxr")
+    from pxr import Usd, UsdGeom
+
+    from hairspring import usd
+
+    groom, path = random_groom(), tmp_path / "a.usda"
+    writer = usd.CurvesWriter(path, Description(24, 1, 1, [groom], "test"))
+    writer.frame(1, groom.points, np.zeros_like(groom.points))
+    writer.finish()
+    stage = Usd.Stage.Open(str(path))
+    prim = next(p for p in stage.Traverse() if p.IsA(UsdGeom.BasisCurves))
+    found = {p.GetPrimvarName(): p.GetInterpolation() for p in UsdGeom.PrimvarsAPI(prim).GetAuthoredPrimvars()}
+    # USD has attributes of its own for color and width.
+    names = set(UNREAL) - {"groom_color", "groom_width"} | {"groom_guide"}
+    assert {name: found.get(name) for name in names} == dict.fromkeys(names, "uniform")
+    assert found["displayColor"] == "vertex" and UsdGeom.Curves(prim).GetWidthsInterpolation() == "vertex"
+    # The names of the proposal for deformable curves of the Alliance for OpenUSD.
+    assert "PhysicsCurvesDeformableSimAPI" in prim.GetMetadata("apiSchemas").GetAddedOrExplicitItems()
+    assert prim.GetAttribute("physics:restShapePoints").HasAuthoredValue()
+
+
 def test_a_file_without_a_unit_is_guessed_and_said(tmp_path):
     groom = random_groom()
     groom.points = groom.points * 300
