@@ -44,13 +44,16 @@ class Description:
     fps: float
     first_frame: float
     frames: int
+    """Number of samples."""
     grooms: list[MovingGroom]
     source: str = ""
+    per_frame: int = 1
+    """Samples for each frame."""
 
     @property
     def last_frame(self) -> float:
         """Number of the last frame."""
-        return self.first_frame + self.frames - 1
+        return self.first_frame + (self.frames - 1) / self.per_frame
 
 
 def identifier(name: str, taken: set[str]) -> str:

@@ -60,8 +60,9 @@ def used_files(path: str) -> list[str]:
     return usd.used_files(path)
 
 
-def write_cache(path: str, fps: float, first_frame: float, frames: int, source: str, over: str | None, grooms: list[dict]):
-    """Begins a file of moving strands; `grooms` holds the fields of `MovingGroom`."""
+def write_cache(path: str, time: tuple[float, float, int, int], source: str, over: str | None, grooms: list[dict]):
+    """Begins a file of moving strands. `time` is the frames per second, the first frame, the number of samples and the samples for
+    each frame; `grooms` holds the fields of `MovingGroom`."""
     file = Path(path)
     described = []
     for groom in grooms:
@@ -69,7 +70,8 @@ def write_cache(path: str, fps: float, first_frame: float, frames: int, source: 
         groom["guides"], groom["guide_weights"] = guides if guides else (None, None)
         groom["guide"] = np.asarray(groom["guide"], bool)
         described.append(MovingGroom(**groom))
-    description = Description(fps, first_frame, frames, described, source)
+    fps, first_frame, frames, per_frame = time
+    description = Description(fps, first_frame, frames, described, source, per_frame)
     try:
         if over is None:
             return _module(file).CurvesWriter(file, description)

@@ -81,6 +81,17 @@ def test_every_attribute_survives_a_round_trip(tmp_path, suffix):
     assert (guides == groom.guides).all() and (weights == groom.guide_weights).all()
 
 
+def test_samples_between_frames_have_their_times(tmp_path, program):
+    path = tmp_path / "hair.abc"
+    options = ["--frames", "10-12", "--start", "10", "--samples", "2", "--fps", "24"]
+    code, _, error = program("bake", shot(tmp_path), "-o", path, *options)
+    assert code == 0, error
+    schema = AbcGeom.ICurves(Abc.IArchive(str(path)).getTop(), "Head_hair").getSchema()
+    sampling = schema.getTimeSampling()
+    times = [sampling.getSampleTime(k) for k in range(schema.getNumSamples())]
+    np.testing.assert_allclose(np.array(times) * 24, [10, 10.5, 11, 11.5, 12])
+
+
 # The attributes of Unreal's groom schema 1.5, with their scope in Alembic and their interpolation in USD.
 UNREAL = {
     "groom_group_id": "uni",

@@ -207,3 +207,92 @@ def test_a_write_that_fails_does_not_end_the_process(tmp_path):
 def test_a_folder_that_is_missing_is_an_error(tmp_path):
     with pytest.raises(OSError, match="the file cannot be created"):
         begin(tmp_path / "none" / "a.abc")
+
+
+def parameter(made, kind, name, values, scope=AbcGeom.GeometryScope.kUniformScope):
+    added = getattr(AbcGeom, f"O{kind}GeomParam")(made.getSchema().getArbGeomParams(), name, False, scope, 1)
+    added.set(getattr(AbcGeom, f"O{kind}GeomParamSample")(values, scope))
+
+
+def filled(kind, values):
+    array = kind(len(values))
+    for k, value in enumerate(values):
+        array[k] = value
+    return array
+
+
+def test_attributes_are_read_in_every_width_of_number_and_the_others_are_named(tmp_path):
+    def fill(made, top):
+        hair = curves(top)
+        parameter(hair, "Uchar", "groom_guide", filled(imath.UnsignedCharArray, [1, 0, 0, 0, 0]))
+        parameter(hair, "UInt16", "groom_group_id", filled(imath.UnsignedShortArray, [3] * 5))
+        parameter(hair, "C4f", "groom_color", filled(imath.C4fArray, [imath.Color4f(0.1, 0.2, 0.3, 1)] * 5))
+        parameter(hair, "V2d", "groom_root_uv", filled(imath.V2dArray, [imath.V2d(0.1, 0.2)] * 5))
+        parameter(hair, "Int32", "stiffness", integers([2] * 5))
+        parameter(hair, "Int32", "clumpness", integers([2] * 5))
+        parameter(hair, "V3f", "damping", vectors([(1, 1, 1)] * 5))
+
+    got = alembic.read_curves(archive(tmp_path / "a.abc", fill))
+    assert (got.groups == 3).all() and (got.factors["stiffness"] == 2).all() and (got.guides[:, 0] == 0).all()
+    np.testing.assert_allclose(got.colors[0], [0.1, 0.2, 0.3], rtol=1e-6)
+    np.testing.assert_allclose(got.root_uvs[0], [0.1, 0.2], rtol=1e-6)
+    assert got.notes == [
+        "attributes of curves that are not used: clumpness",
+        "attributes of curves whose type is not read: damping; write numbers of 32 bits",
+    ]
+
+
+def test_closest_guides_name_ids(tmp_path):
+    def fill(made, top):
+        hair = curves(top)
+        parameter(hair, "Int32", "groom_id", integers([14, 13, 12, 11, 10]))
+        parameter(hair, "V3i", "groom_closest_guides", imath.V3iArrayFromBuffer(np.full((5, 3), 13, np.int32)))
+        parameter(hair, "V3f", "groom_guide_weights", vectors([(1, 0, 0)] * 5))
+
+    assert (alembic.read_curves(archive(tmp_path / "a.abc", fill)).guides == 1).all()
+
+
+def test_guides_in_an_object_of_their_own_guide_the_others(tmp_path):
+    def fill(made, top):
+        guides, hair = curves(top, "guides"), curves(top)
+        parameter(guides, "Int16", "groom_guide", filled(imath.ShortArray, [1]), AbcGeom.GeometryScope.kConstantScope)
+        parameter(guides, "Int32", "groom_id", integers([100, 101, 102, 103, 104]))
+        parameter(hair, "V3i", "groom_closest_guides", imath.V3iArrayFromBuffer(np.full((5, 3), 102, np.int32)))
+        parameter(hair, "V3f", "groom_guide_weights", vectors([(0.5, 0.5, 0)] * 5))
+
+    got = alembic.read_curves(archive(tmp_path / "a.abc", fill))
+    names = [got.group_names[g] for g in got.groups]
+    guide = names.index("/guides") + 2
+    assert (got.guides[np.array(names) == "/hair"] == guide).all()
+    own = np.flatnonzero(np.array(names) == "/guides")
+    assert (got.guides[own, 0] == own).all() and (got.guide_weights[own, 0] == 1).all()
+
+
+def test_guides_that_cannot_be_used_are_left_out_with_a_note(tmp_path):
+    for name, ids, weights, words in (
+        ("a", 99, (1, 0, 0), "strands that do not exist"),
+        ("b", 1, (np.nan, 0, 0), "not finite, below 0 or all 0"),
+        ("c", 1, (0, 0, 0), "not finite, below 0 or all 0"),
+    ):
+
+        def fill(made, top):
+            hair = curves(top)
+            parameter(hair, "V3i", "groom_closest_guides", imath.V3iArrayFromBuffer(np.full((5, 3), ids, np.int32)))
+            parameter(hair, "V3f", "groom_guide_weights", vectors([weights] * 5))
+
+        got = alembic.read_curves(archive(tmp_path / f"{name}.abc", fill))
+        assert got.guides is None and any(words in note for note in got.notes), (name, got.notes)
+
+
+def test_curves_without_strands_or_of_negative_length_are_named(tmp_path):
+    def fill(made, top, counts):
+        made = AbcGeom.OCurves(top, "hair")
+        points = np.zeros((max(sum(counts), 0), 3))
+        linear, open_ends = AbcGeom.CurveType.kLinear, AbcGeom.CurvePeriodicity.kNonPeriodic
+        made.getSchema().set(AbcGeom.OCurvesSchemaSample(vectors(points), integers(counts), linear, open_ends))
+        return made
+
+    with pytest.raises(FormatError, match="/hair has no curves; left out"):
+        alembic.read_curves(archive(tmp_path / "a.abc", lambda made, top: fill(made, top, [])))
+    with pytest.raises(FormatError, match="a curve of -3 points"):
+        alembic.read_curves(archive(tmp_path / "b.abc", lambda made, top: fill(made, top, [-3, 10])))

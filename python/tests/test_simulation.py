@@ -4,6 +4,7 @@ import threading
 
 import numpy as np
 import pytest
+from conftest import tuft
 
 import hairspring as hs
 
@@ -191,3 +192,18 @@ def test_settings_are_those_of_scene_files():
     assert "substeps" in hs.Solver().to_dict()
     with pytest.raises(AttributeError):
         wavy.nothing
+
+
+def test_numbers_that_are_not_finite_are_refused():
+    points, offsets = tuft()
+    guides = np.zeros((12, 3), np.uint32)
+    with pytest.raises(hs.SettingError, match="guide_weights"):
+        hs.Groom(points, offsets, guides=guides, guide_weights=np.full((12, 3), np.nan, np.float32))
+    with pytest.raises(hs.SettingError, match="`center` must be 3 finite numbers"):
+        hs.Collider.sphere((np.nan, 0, 0), 0.1)
+    stage = hs.Stage(hs.Scene.builtin(strands=50, guides=10))
+    pose = np.eye(4)
+    pose[0, 3] = np.inf
+    for wrong in ((np.nan, 0, 0), pose):
+        with pytest.raises(hs.SettingError, match="finite"):
+            stage.move_body(wrong)

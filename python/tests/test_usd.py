@@ -309,6 +309,7 @@ def test_only_guides_and_samples_between_frames(tmp_path, program):
     stage = Usd.Stage.Open(str(path))
     curves = UsdGeom.BasisCurves(stage.GetPrimAtPath("/Hair/Head_hair"))
     assert curves.GetPointsAttr().GetTimeSamples() == [1, 1.5, 2, 2.5, 3]
+    assert (stage.GetStartTimeCode(), stage.GetEndTimeCode()) == (1, 3)
     assert len(curves.GetCurveVertexCountsAttr().Get()) == 30
 
 
@@ -367,6 +368,32 @@ def test_hair_follows_a_body_that_a_skeleton_deforms(tmp_path, program):
     assert len(curves.GetPointsAttr().GetTimeSamples()) == 24
     roots = np.array(curves.GetPointsAttr().Get(24))[::10]
     np.testing.assert_allclose(roots.mean(axis=0), top, atol=1e-4)
+
+
+def test_a_skeleton_in_instances_deforms_the_body_too(tmp_path):
+    skinned_asset(tmp_path / "char.usda")
+    for name, file in (("inner", "char.usda"), ("outer", "inner.usda")):
+        inner = Usd.Stage.CreateNew(str(tmp_path / f"{name}.usda"))
+        UsdGeom.SetStageUpAxis(inner, "Z")
+        UsdGeom.SetStageMetersPerUnit(inner, 0.01)
+        top = UsdGeom.Xform.Define(inner, f"/{name}")
+        inner.SetDefaultPrim(top.GetPrim())
+        below = inner.DefinePrim(f"/{name}/one")
+        below.GetReferences().AddReference(file)
+        below.SetInstanceable(True)
+        inner.Save()
+    direct, nested = usd.read_mesh(tmp_path / "char.usda"), usd.read_mesh(tmp_path / "outer.usda")
+    assert nested.frames is not None, nested.notes
+    np.testing.assert_allclose(nested.frames, direct.frames, atol=1e-6)
+
+
+def test_weights_that_do_not_fit_are_noted(tmp_path):
+    skinned_asset(tmp_path / "char.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "char.usda"))
+    UsdSkel.BindingAPI(stage.GetPrimAtPath("/char/body")).GetJointIndicesPrimvar().Set([0] * 4 + [99] * 8)
+    stage.Save()
+    notes = usd.read_mesh(tmp_path / "char.usda").notes
+    assert any("the joint indices or weights of /char/body do not fit" in note for note in notes), notes
 
 
 def test_a_layer_over_the_asset_moves_its_own_curves(tmp_path, program):

@@ -7,7 +7,7 @@ import pytest
 
 pytest.importorskip("pxr")
 from conftest import tuft
-from pxr import Gf, Sdf, Tf, Usd, UsdGeom, Vt
+from pxr import Gf, Sdf, Tf, Usd, UsdGeom, UsdSkel, Vt
 from stages import CORNERS, FACES, a_mesh, define_curves, new_stage, volume
 
 import hairspring as hs
@@ -265,3 +265,63 @@ def test_a_full_disk_is_an_error_with_a_sentence(tmp_path, suffix):
     assert list(tmp_path.iterdir()) == []
     with pytest.raises(OSError, match="cannot be created"):
         usd.CurvesWriter("/proc/none/a.usdc", Description(24, 1, 1, [groom]))
+
+
+def test_the_first_sample_of_the_visibility_counts(tmp_path):
+    stage, curves = a_groom_stage(tmp_path / "a.usda")
+    curves.CreateVisibilityAttr().Set("invisible", 1)
+    with pytest.raises(FormatError, match="hidden, guides or proxies are left out"):
+        read(stage)
+
+
+def test_two_guides_for_each_strand_keep_their_weights(tmp_path):
+    stage, curves = a_groom_stage(tmp_path / "a.usda")
+    api, types = UsdGeom.PrimvarsAPI(curves.GetPrim()), Sdf.ValueTypeNames
+    api.CreatePrimvar("groom_closest_guides", types.Int2Array, "uniform").Set([(0, 5)] * 12)
+    api.CreatePrimvar("groom_guide_weights", types.Float2Array, "uniform").Set([(0.7, 0.3)] * 12)
+    got = read(stage)
+    assert (got.guides[:, :2] == [0, 5]).all()
+    np.testing.assert_allclose(got.guide_weights, [[0.7, 0.3, 0]] * 12, rtol=1e-6)
+
+
+@pytest.mark.parametrize("weight", [np.nan, -1.0, 0.0])
+def test_guide_weights_that_cannot_be_used_are_left_out_with_a_note(tmp_path, weight):
+    stage, curves = a_groom_stage(tmp_path / "a.usda")
+    api, types = UsdGeom.PrimvarsAPI(curves.GetPrim()), Sdf.ValueTypeNames
+    api.CreatePrimvar("groom_closest_guides", types.IntArray, "uniform").Set([0] * 12)
+    api.CreatePrimvar("groom_guide_weights", types.FloatArray, "uniform").Set([weight] * 12)
+    got = read(stage)
+    assert got.guides is None and any("groom_guide_weights" in note for note in got.notes)
+
+
+def test_text_in_place_of_numbers_is_one_sentence(tmp_path):
+    stage, curves = a_groom_stage(tmp_path / "a.usda")
+    api, types = UsdGeom.PrimvarsAPI(curves.GetPrim()), Sdf.ValueTypeNames
+    api.CreatePrimvar("stiffness", types.StringArray, "uniform").Set(["a"] * 12)
+    with pytest.raises(FormatError, match="the primvar `stiffness` of /hair holds string"):
+        read(stage)
+
+
+def test_hair_on_a_skeleton_is_noted(tmp_path):
+    stage, curves = a_groom_stage(tmp_path / "a.usda")
+    UsdSkel.BindingAPI.Apply(curves.GetPrim())
+    assert any("bound to a skeleton" in note for note in read(stage).notes)
+
+
+def test_values_of_a_mesh_of_another_number_are_noted(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    mesh = a_mesh(stage, CORNERS, *FACES)
+    api, types = UsdGeom.PrimvarsAPI(mesh), Sdf.ValueTypeNames
+    api.CreatePrimvar("st", types.TexCoord2fArray, "vertex").Set([(0, 0)] * 3)
+    api.CreatePrimvar("displayColor", types.Color3fArray, "constant").Set([(1, 0, 0)])
+    stage.Save()
+    got = usd.read_mesh(tmp_path / "a.usda")
+    assert got.uvs is None and got.notes == ["`st` of /m does not have 2 numbers for each vertex; left out"]
+
+
+def test_constant_primvars_of_parents_count(tmp_path):
+    stage = new_stage(tmp_path / "a.usda")
+    parent = UsdGeom.Xform.Define(stage, "/rig")
+    UsdGeom.PrimvarsAPI(parent).CreatePrimvar("stiffness", Sdf.ValueTypeNames.FloatArray, "constant").Set([3.0])
+    define_curves(stage, "/rig/hair", *tuft())
+    assert (read(stage).factors["stiffness"] == 3).all()

@@ -228,6 +228,7 @@ def test_the_table_has_the_values_of_the_report(tmp_path, program):
 WRONG = [
     (["--set", "wind.gust"], 2, "--set wind.gust: expected KEY=VALUE"),
     (["--set", "=3"], 2, "expected KEY=VALUE"),
+    (["--set", "solver.substeps=2", "--set", "solver.substeps=4"], 2, "--set solver.substeps is given twice"),
     (["--set", "solver.substep=2"], 4, "solver.substep"),
     (["--size", "64"], 2, "invalid value '64' for '--size"),
     (["--frames", "5-2"], 2, "invalid value '5-2' for '--frames"),

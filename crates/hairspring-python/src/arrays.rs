@@ -36,11 +36,11 @@ impl Floats<'_> {
         }
     }
 
-    /// A vector of `N` numbers.
+    /// A vector of `N` finite numbers.
     pub fn vector<T: Pod, const N: usize>(&self, name: &str) -> PyResult<T> {
         match self.rows::<T, N>(name)? {
-            [one] => Ok(*one),
-            _ => Err(setting(format!("`{name}` must be {N} numbers"))),
+            [one] if self.numbers()?.iter().all(|x| x.is_finite()) => Ok(*one),
+            _ => Err(setting(format!("`{name}` must be {N} finite numbers"))),
         }
     }
 

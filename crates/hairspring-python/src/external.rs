@@ -141,10 +141,9 @@ impl ExternalFormats for PythonFormats {
                 fields.set_item("guide", PyArray1::from_slice(py, guide))?;
                 grooms.push(fields);
             }
-            let CacheDescription { fps, first_frame, frames, source, over, .. } = description;
-            let over = over.as_deref();
-            let writer =
-                host.call_method1("write_cache", (path, fps, first_frame, frames, source, over, grooms))?;
+            let CacheDescription { fps, first_frame, frames, per_frame, source, over, .. } = description;
+            let time = (fps, first_frame, frames, per_frame);
+            let writer = host.call_method1("write_cache", (path, time, source, over.as_deref(), grooms))?;
             Ok(Box::new(Writer(Some(writer.unbind()))) as Box<dyn CacheWriter>)
         })
     }

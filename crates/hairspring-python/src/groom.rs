@@ -173,6 +173,9 @@ impl Arrays<'_> {
                 if guides.len() != weights.len() || guides.iter().flatten().any(|g| *g as usize >= strands) {
                     return Err(setting("`guides` must name strands of the groom, with one weight each"));
                 }
+                if !weights.iter().all(|w| w.iter().all(|w| w.is_finite() && *w >= 0.0)) {
+                    return Err(setting("`guide_weights` must be finite and 0 or more"));
+                }
                 guides.iter().zip(weights).map(|(g, w)| GuideWeights { guides: *g, weights: *w }).collect()
             }
             _ => return Err(setting("`guides` and `guide_weights` belong together")),

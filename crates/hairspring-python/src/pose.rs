@@ -40,6 +40,9 @@ fn rigid(m: Mat4) -> PyResult<RigidTransform> {
     let axes = glam::Mat3::from_mat4(m);
     let identity = axes.transpose() * axes - glam::Mat3::IDENTITY;
     let error = identity.to_cols_array().iter().fold(0.0f32, |most, e| most.max(e.abs()));
+    if !m.w_axis.is_finite() {
+        return Err(setting("the translation of a pose is not finite"));
+    }
     if !(error < ORTHOGONAL && axes.determinant() > 0.0) {
         return Err(setting(
             "the matrix of a pose must rotate and translate only; it scales, shears or mirrors",

@@ -90,14 +90,34 @@ def place(points, matrix: np.ndarray, to: np.ndarray) -> np.ndarray:
 def attribute(schema, kinds: tuple, *names: str):
     """The values of the first of these attributes, and its interpolation."""
     parameters = schema.getArbGeomParams()
-    if not parameters.valid():
-        return None, ""
-    known = {header.getName(): header for header in parameters.propertyheaders}
+    known = headers(schema)
     for name in names:
         for kind in kinds:
             if name in known and kind.matches(known[name]):
                 return parameter_values(kind(parameters, name))
     return None, ""
+
+
+def headers(schema) -> dict:
+    """The attributes of an object by their names."""
+    parameters = schema.getArbGeomParams()
+    return {header.getName(): header for header in parameters.propertyheaders} if parameters.valid() else {}
+
+
+def unused(found: list[tuple], notes: list[str]) -> None:
+    """Adds notes about attributes of curves that are not read: unknown ones, and known ones of another type."""
+    unknown, of_another_type = set(), set()
+    for curves, _ in found:
+        for name, header in headers(curves.getSchema()).items():
+            kinds = KINDS.get(name)
+            if kinds is None and name not in IGNORED:
+                unknown.add(name)
+            elif kinds and not any(kind.matches(header) for kind in kinds):
+                of_another_type.add(name)
+    if unknown:
+        notes.append(f"attributes of curves that are not used: {naming(sorted(unknown))}")
+    if of_another_type:
+        notes.append(f"attributes of curves whose type is not read: {naming(sorted(of_another_type))}; write numbers of 32 bits")
 
 
 def parameter_values(parameter):
@@ -108,11 +128,29 @@ def parameter_values(parameter):
     return np.atleast_1d(values), SCOPES.get(str(parameter.getScope()).split(".")[-1], "constant")
 
 
-INTEGERS = (AbcGeom.IInt32GeomParam, AbcGeom.IInt16GeomParam, AbcGeom.IUInt32GeomParam, AbcGeom.IInt64GeomParam)
+FLOATS = (AbcGeom.IFloatGeomParam, AbcGeom.IDoubleGeomParam, AbcGeom.IInt32GeomParam, AbcGeom.IInt16GeomParam)
+INTEGERS = (
+    *(AbcGeom.IInt32GeomParam, AbcGeom.IInt16GeomParam, AbcGeom.IUInt32GeomParam, AbcGeom.IInt64GeomParam),
+    *(AbcGeom.IUInt16GeomParam, AbcGeom.IUcharGeomParam, AbcGeom.ICharGeomParam, AbcGeom.IFloatGeomParam),
+)
 TRIPLES = (AbcGeom.IV3iGeomParam, AbcGeom.IV3fGeomParam, AbcGeom.IInt32GeomParam, AbcGeom.IFloatGeomParam)
-PAIRS = (AbcGeom.IV2fGeomParam, AbcGeom.IP2fGeomParam, AbcGeom.IFloatGeomParam)
-COLORS = (AbcGeom.IC3fGeomParam, AbcGeom.IV3fGeomParam)
-FLOATS = (AbcGeom.IFloatGeomParam, AbcGeom.IDoubleGeomParam)
+PAIRS = (AbcGeom.IV2fGeomParam, AbcGeom.IP2fGeomParam, AbcGeom.IV2dGeomParam, AbcGeom.IFloatGeomParam)
+COLORS = (AbcGeom.IC3fGeomParam, AbcGeom.IV3fGeomParam, AbcGeom.IC4fGeomParam, AbcGeom.IV3dGeomParam)
+WEIGHTS = (AbcGeom.IV3fGeomParam, AbcGeom.IFloatGeomParam)
+
+KINDS = {
+    "groom_width": FLOATS,
+    **dict.fromkeys(("groom_color", "Cd", "displayColor"), COLORS),
+    **dict.fromkeys(("groom_root_uv", "surface_uv_coordinate", "st"), PAIRS),
+    **dict.fromkeys(("groom_group_id", "groom_id", "groom_guide"), INTEGERS),
+    "groom_closest_guides": TRIPLES,
+    "groom_guide_weights": WEIGHTS,
+    **dict.fromkeys(FACTORS, FLOATS),
+}
+"""The types in which each attribute is read."""
+
+IGNORED = ("groom_version_major", "groom_version_minor", "groom_group_name", "width", "N", "uv")
+"""Attributes that have nothing to do with the simulation, or are read as properties of the curves."""
 
 
 def read_curves(path: Path, scale: float | None = None, up: str | None = None) -> Curves:
@@ -126,6 +164,7 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
     to = (Z_UP.T if (up or "y").lower() == "z" else np.eye(3)) * (1.0 if scale is None else scale)
     notes: list[str] = []
     found = list(visible(archive.getTop(), AbcGeom.ICurves, notes))
+    unused(found, notes)
     parts = [read_object(curves.getFullName(), curves.getSchema(), above, to, notes) for curves, above in found]
     read = [part for part in parts if part]
     if not read:
@@ -138,11 +177,16 @@ def read_object(name: str, schema, above: list, to: np.ndarray, notes: list[str]
     first = Abc.ISampleSelector()
     sample = schema.getValue(first)
     counts = np.asarray(sample.getCurvesNumVertices()).astype(np.int64)
+    if len(counts) == 0:
+        notes.append(f"{name} has no curves; left out")
+        return None
     if str(sample.getWrap()).endswith("kPeriodic"):
         notes.append(f"{name} has closed curves; left out")
         return None
     matrix = world(above, first)
     control = place(sample.getPositions(), matrix, to)
+    if counts.min() < 0:
+        raise FormatError(f"{name} has a curve of {counts.min()} points; export it again")
     if counts.sum() != len(control):
         raise FormatError(f"{name} has {len(control)} points, and its counts name {counts.sum()}")
     kind = "cubic" if str(sample.getType()).endswith("kCubic") else "linear"
@@ -155,6 +199,9 @@ def read_object(name: str, schema, above: list, to: np.ndarray, notes: list[str]
         return None
     if kind == "cubic" and not basis:
         kind = "linear"
+    knots = np.asarray(sample.getKnots() or [])
+    if basis == "bspline" and len(knots) > 3 and knots[0] == knots[3]:
+        notes.append(f"{name} has knots, which are not used: its B-splines are read as uniform, and begin inside of their first points")
     check_counts(name, counts, kind, basis)
     length = float(np.cbrt(abs(np.linalg.det(matrix[:3, :3] @ to))))
     each = np.array([[varying_count(int(n), kind, basis, "nonperiodic") for n in counts], counts])
@@ -169,6 +216,13 @@ def read_object(name: str, schema, above: list, to: np.ndarray, notes: list[str]
     def spread(kinds: tuple, attribute_name: str) -> np.ndarray | None:
         return of_strands(attribute(schema, kinds, attribute_name)[0], n, f"`{attribute_name}` of {name}", notes)
 
+    def whole(attribute_name: str) -> np.ndarray | None:
+        values = spread(INTEGERS, attribute_name)
+        if values is not None and not np.isfinite(values).all():
+            notes.append(f"`{attribute_name}` of {name} is not finite; left out")
+            return None
+        return None if values is None else values.astype(np.int64)
+
     def triples(kinds: tuple, attribute_name: str) -> np.ndarray | None:
         values = attribute(schema, kinds, attribute_name)[0]
         if values is None or values.size == 3 * n:
@@ -181,6 +235,7 @@ def read_object(name: str, schema, above: list, to: np.ndarray, notes: list[str]
         width, width_scope = parameter_values(schema.getWidthsParam())
         width, width_scope = fitted(width, width_scope, each, f"`width` of {name}", notes, instead=DEFAULT_RADIUS)
     color, color_scope = fit(3, COLORS, "groom_color", "Cd", "displayColor")
+    color = None if color is None else color[:, :3]
     uv, uv_scope = fit(2, PAIRS, "groom_root_uv", "surface_uv_coordinate", "st")
     strands, radii, colors, uvs, start = [], [], [], [], 0
     for s, count in enumerate(counts):
@@ -199,11 +254,11 @@ def read_object(name: str, schema, above: list, to: np.ndarray, notes: list[str]
         "radii": radii,
         "colors": colors,
         "uvs": uvs,
-        "group": spread(INTEGERS, "groom_group_id"),
-        "ids": spread(INTEGERS, "groom_id"),
-        "guide": spread(INTEGERS, "groom_guide"),
+        "group": whole("groom_group_id"),
+        "ids": whole("groom_id"),
+        "guide": whole("groom_guide"),
         "closest": triples(TRIPLES, "groom_closest_guides"),
-        "weights": triples((AbcGeom.IV3fGeomParam, AbcGeom.IFloatGeomParam), "groom_guide_weights"),
+        "weights": triples(WEIGHTS, "groom_guide_weights"),
         "factors": {factor: spread(FLOATS, factor) for factor in FACTORS},
     }
 
@@ -256,20 +311,57 @@ def join(read: list[dict], notes: list[str]) -> Curves:
     if marks:
         ids = np.concatenate([np.full(len(r["strands"]), -1) if r["ids"] is None else r["ids"] for r in drawn])
         flags |= np.isin(ids, sorted(marks))
-    first = np.cumsum([0] + [len(r["strands"]) for r in drawn])
-    if all(r["closest"] is not None and r["weights"] is not None for r in drawn):
-        closest = np.concatenate([r["closest"] + int(first[k]) for k, r in enumerate(drawn)])
-        weights = np.concatenate([r["weights"] for r in drawn]).astype(np.float64)
-        if closest.min() >= 0 and closest.max() < len(strands):
-            weights /= np.maximum(weights.sum(axis=1, keepdims=True), 1e-12)
-            curves.guides, curves.guide_weights = closest.astype(np.uint32), weights.astype(np.float32)
-        else:
-            notes.append("groom_closest_guides names strands that do not exist; left out")
+    closest, weights = guides_of(drawn, notes)
+    if closest is not None:
+        curves.guides, curves.guide_weights = closest, weights
     if curves.guides is None and flags.any():
         found = guides_from_flags(flags, points[offsets[:-1]])
         if found:
             curves.guides, curves.guide_weights = found
     return curves
+
+
+def guides_of(drawn: list[dict], notes: list[str]) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """The guides of each strand and their weights. `groom_closest_guides` names strands by `groom_id`: those of the objects of
+    guides, or else those of its own object. A guide follows itself."""
+    with_guides = [r["closest"] is not None and r["weights"] is not None for r in drawn]
+    if not any(with_guides):
+        return None, None
+    first = np.cumsum([0] + [len(r["strands"]) for r in drawn])
+    are_guides = [r["guide"] is not None and bool(r["guide"].all()) for r in drawn]
+
+    def by_id(k: int) -> dict[int, int]:
+        r = drawn[k]
+        ids = np.arange(len(r["strands"])) if r["ids"] is None else r["ids"]
+        return {int(i): int(first[k]) + s for s, i in enumerate(ids)}
+
+    of_guides: dict[int, int] = {}
+    for k, guides in enumerate(are_guides):
+        of_guides |= by_id(k) if guides else {}
+    closest, weights = [], []
+    for k, r in enumerate(drawn):
+        own = np.arange(first[k], first[k + 1])
+        if with_guides[k]:
+            known = of_guides or by_id(k)
+            rows = np.array([[known.get(int(i), -1) for i in row] for row in r["closest"]])
+            shares = r["weights"].astype(np.float64)
+        elif are_guides[k]:
+            rows, shares = np.repeat(own[:, None], 3, axis=1), np.tile([1.0, 0.0, 0.0], (len(own), 1))
+        else:
+            notes.append(f"{r['name']} has no groom_closest_guides, so the guides of all objects are left out")
+            return None, None
+        closest.append(rows)
+        weights.append(shares)
+    found, total = np.concatenate(closest), np.concatenate(weights)
+    # A guide without weight does not matter.
+    found = np.where((found < 0) & (total == 0), found.max(axis=1, keepdims=True), found)
+    if found.min() < 0:
+        notes.append("groom_closest_guides names strands that do not exist; left out")
+        return None, None
+    if not np.isfinite(total).all() or total.min() < 0 or total.sum(axis=1).min() <= 0:
+        notes.append("groom_guide_weights are not finite, below 0 or all 0; left out, with the guides")
+        return None, None
+    return found.astype(np.uint32), (total / total.sum(axis=1, keepdims=True)).astype(np.float32)
 
 
 def sample_times(meshes: list[tuple], notes: list[str]) -> tuple[np.ndarray, float]:

@@ -56,7 +56,7 @@ class CurvesWriter:
     `groom_closest_guides` and `groom_guide_weights`. If only some strands were simulated, they are a second object with
     `groom_guide` 1 and the same `groom_id`.
 
-    Frame n is at the time n / fps. The file appears under its name when `finish` returns.
+    Frame n is at the time n / fps, and samples between frames are at equal distances. The file appears under its name when `finish` returns.
     """
 
     def __init__(self, path: str | os.PathLike, description: Description):
@@ -84,7 +84,8 @@ class CurvesWriter:
         description = self.description
         text = f"from {description.source}" if description.source else "hair"
         self.archive = Abc.CreateArchiveWithInfo(str(self.pending), description.fps, "Hairspring", text)
-        sampling = AbcCoreAbstract.TimeSampling(1 / description.fps, description.first_frame / description.fps)
+        step = 1 / (description.fps * description.per_frame)
+        sampling = AbcCoreAbstract.TimeSampling(step, description.first_frame / description.fps)
         self.sampling = Abc.Argument(self.archive.addTimeSampling(sampling))
         taken: set[str] = set()
         first = 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from pxr import Usd, UsdGeom
+from pxr import Usd, UsdGeom, UsdSkel
 
 from . import material
 from ..formats import FACTORS, MAX_POSITIONS, AbsentError, Curves, FormatError, as_lengths_and_points, guides_from_flags
@@ -49,7 +49,11 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
         if kind == "cubic" and basis not in ("bezier", "bspline", "catmullRom"):
             raise FormatError(f"{prim.GetPath()} has the basis '{basis}'; bezier, bspline and catmullRom are read")
         check_counts(str(prim.GetPath()), counts, kind, basis)
-        places = [world_of(prim, time, to)] if places is None else places
+        # Static curves may move with their parents.
+        at = Usd.TimeCode.EarliestTime() if time.IsDefault() else time
+        places = [world_of(prim, at, to)] if places is None else places
+        if prim.HasAPI(UsdSkel.BindingAPI):
+            notes.append(f"{prim.GetPath()} is bound to a skeleton, which is not used: its roots follow the body")
         total += len(control) * len(places)
         if total > MAX_POSITIONS:
             raise FormatError(f"the curves and their instances have more than {MAX_POSITIONS} points; export fewer")
@@ -92,11 +96,13 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
                     factor = None if values is None else expand(values, interpolation, s, each, max(len(points), 1))
                     without = np.nan if stiffer is None or name != "stiffness" else stiffer
                     parts[name].append(without if factor is None else float(np.mean(factor)))
-                parts["groups"].append(int(np.ravel(ids[s])[0]) if ids is not None else group)
+                parts["groups"].append(float(np.ravel(ids[s])[0]) if ids is not None else group)
                 parts["flags"].append(bool(np.any(flags[s])) if flags is not None else False)
                 if closest is not None and weights is not None:
-                    parts["closest"].append(before + np.resize(closest[s], 3).astype(np.int64))
-                    parts["weights"].append(np.resize(np.atleast_1d(weights[s]), 3))
+                    own, shares = np.ravel(closest[s])[:3], np.ravel(weights[s])[:3]
+                    # Fewer than three guides: the others have no weight.
+                    parts["closest"].append(before + np.append(own, np.repeat(own[:1], 3 - len(own))).astype(np.int64))
+                    parts["weights"].append(np.append(shares, np.zeros(3 - len(shares))))
     return assemble(strands, parts, names, notes)
 
 
@@ -133,8 +139,8 @@ def assemble(strands: list[np.ndarray], parts: dict[str, list], names: list[str]
     uvs = np.array(parts["uvs"])
     if np.isfinite(uvs).all():
         curves.root_uvs = uvs.astype(np.float32)
-    groups = np.array(parts["groups"])
-    if groups.min() < 0 or groups.max() > 65535:
+    groups = np.array(parts["groups"], np.float64)
+    if not np.isfinite(groups).all() or groups.min() < 0 or groups.max() > 65535:
         notes.append("groom_group_id is not from 0 to 65535; left out")
     elif groups.max() > 0 or len(names) == 1:
         curves.groups = groups.astype(np.uint32)
@@ -144,8 +150,10 @@ def assemble(strands: list[np.ndarray], parts: dict[str, list], names: list[str]
             curves.factors[name] = np.where(np.isfinite(values), np.maximum(values, 0), 1).astype(np.float32)
     if len(parts["closest"]) == len(strands):
         closest, total = np.array(parts["closest"]), np.array(parts["weights"], np.float64)
-        total /= np.maximum(total.sum(axis=1, keepdims=True), 1e-12)
-        if closest.min() >= 0 and closest.max() < len(strands):
+        if not np.isfinite(total).all() or total.min() < 0 or total.sum(axis=1).min() <= 0:
+            notes.append("`groom_guide_weights` are not finite, below 0 or all 0; left out, with the guides")
+        elif closest.min() >= 0 and closest.max() < len(strands):
+            total /= total.sum(axis=1, keepdims=True)
             curves.guides, curves.guide_weights = closest.astype(np.uint32), total.astype(np.float32)
         else:
             notes.append("`groom_closest_guides` names strands that do not exist; left out")

@@ -29,6 +29,8 @@ def of_instancer(prim: Usd.Prim, kind, to: np.ndarray, notes: list[str]) -> list
         return []
     arrays = (instancer.GetProtoIndicesAttr(), instancer.GetPositionsAttr(), instancer.GetOrientationsAttr(), instancer.GetScalesAttr())
     time = first_time(arrays)
+    # Static instances may move with their parents.
+    time = Usd.TimeCode.EarliestTime() if time.IsDefault() else time
     indices = np.array(arrays[0].Get(time) or [], np.int64)
     every = UsdGeom.PointInstancer
     transforms = instancer.ComputeInstanceTransformsAtTime(time, time, every.IncludeProtoXform, every.IgnoreMask) or []

@@ -9,7 +9,8 @@ from pxr import Usd, UsdGeom, UsdSkel
 
 from ..formats import MAX_POSITIONS, MAX_RATE, MAX_SAMPLES, AbsentError, FormatError, MovingMesh
 from ..shapes import distinct, spacing, triangulate
-from .stage import because, faults, instancers, left_out, open_stage, primvar, prims, prototypes, quiet, space, world_of
+from .stage import all_prims, because, faults, instancers, left_out, open_stage, primvar, prims, prototypes, quiet, space
+from .stage import world_of
 
 SURFACES = (UsdGeom.NurbsPatch, UsdGeom.Sphere, UsdGeom.Cube, UsdGeom.Cylinder, UsdGeom.Cone, UsdGeom.Capsule, UsdGeom.Plane)
 """Types of surfaces that are not read."""
@@ -50,7 +51,7 @@ def sample_times(stage: Usd.Stage, meshes: list[Usd.Prim], notes: list[str]) -> 
 
 def baked_skins(stage: Usd.Stage) -> Usd.Stage:
     """The stage with its skinned meshes as time-sampled points, in a layer in memory."""
-    if not any(prim.IsA(UsdSkel.Root) for prim in stage.Traverse()):
+    if not all_prims(stage, UsdSkel.Root):
         return stage
     flat = Usd.Stage.CreateInMemory()
     with quiet():
@@ -58,10 +59,12 @@ def baked_skins(stage: Usd.Stage) -> Usd.Stage:
     flat.SetTimeCodesPerSecond(stage.GetTimeCodesPerSecond())
     UsdGeom.SetStageMetersPerUnit(flat, UsdGeom.GetStageMetersPerUnit(stage))
     UsdGeom.SetStageUpAxis(flat, UsdGeom.GetStageUpAxis(stage))
-    for prim in list(flat.Traverse()):
-        if prim.IsInstance():
+    # Instances may hold instances.
+    while instances := [prim for prim in flat.Traverse() if prim.IsInstance()]:
+        for prim in instances:
             prim.SetInstanceable(False)
-    UsdSkel.BakeSkinning(flat.Traverse())
+    with quiet():
+        UsdSkel.BakeSkinning(flat.Traverse())
     return flat
 
 
@@ -71,7 +74,7 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
     stage = baked_skins(opened)
     to = space(stage, scale, up)
     meshes = prims(stage, UsdGeom.Mesh)
-    broken, notes = faults(opened), left_out(stage, UsdGeom.Mesh, SURFACES, "meshes") + unread_instances(stage)
+    broken, notes = faults(opened) + bad_skins(prims(opened, UsdGeom.Mesh)), left_out(stage, UsdGeom.Mesh, SURFACES, "meshes") + unread_instances(stage)
     if not meshes:
         # The reader of curves reports files that are missing.
         known = prims(stage, UsdGeom.BasisCurves)
@@ -98,8 +101,8 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
         sizes.append(len(points))
         triangles.append(own + total)
         parts.append((str(prim.GetPath()), len(own)))
-        uvs.append(of_vertices(prim, 2, indices, len(points), "st", "st0", "UVMap", "map1"))
-        colors.append(of_vertices(prim, 3, indices, len(points), "displayColor"))
+        uvs.append(of_vertices(prim, 2, indices, len(points), notes, "st", "st0", "UVMap", "map1"))
+        colors.append(of_vertices(prim, 3, indices, len(points), notes, "displayColor"))
         total += len(points)
     if len(at) * total > MAX_POSITIONS:
         raise FormatError(f"the motion holds more than {MAX_POSITIONS} positions; shorten it")
@@ -119,10 +122,32 @@ def read_mesh(path: Path, scale: float | None = None, up: str | None = None) -> 
             first = end
     moves = len(at) > 1 and not np.allclose(frames, frames[:1], atol=1e-7)
     notes += [f"{len(at)} frames at {rate:g} Hz move the body's vertices"] if moves else []
+    for arrays, name in ((uvs, "texture coordinates"), (colors, "displayColor for each vertex")):
+        if 0 < sum(a is not None for a in arrays) < len(arrays):
+            notes.append(f"only some meshes have {name}; left out")
     joined = np.concatenate(triangles).astype(np.uint32)
     return MovingMesh(
         frames[0].copy(), joined, together(uvs), parts, frames if moves else None, rate, notes, together(colors)
     )
+
+
+def bad_skins(meshes: list[Usd.Prim]) -> list[str]:
+    """Notes about meshes whose weights cannot be used, so that they stay rigid."""
+    notes = []
+    for prim in meshes:
+        binding = UsdSkel.BindingAPI(prim)
+        indices, weights = binding.GetJointIndicesPrimvar(), binding.GetJointWeightsPrimvar()
+        if not (indices and indices.HasValue()):
+            continue
+        own, shares = np.array(indices.ComputeFlattened() or []), np.array((weights and weights.ComputeFlattened()) or [])
+        size = max(indices.GetElementSize(), 1)
+        vertices = len(UsdGeom.Mesh(prim).GetPointsAttr().Get(Usd.TimeCode.EarliestTime()) or [])
+        wanted = size * (1 if indices.GetInterpolation() == "constant" else vertices)
+        skeleton = UsdSkel.Skeleton(binding.GetInheritedSkeleton()) if binding.GetInheritedSkeleton() else None
+        joints = binding.GetJointsAttr().Get() or (skeleton and skeleton.GetJointsAttr().Get()) or []
+        if len(own) != wanted or len(shares) != wanted or (len(joints) and len(own) and not 0 <= own.min() <= own.max() < len(joints)):
+            notes.append(f"the joint indices or weights of {prim.GetPath()} do not fit its {vertices} vertices and {len(joints)} joints, so it does not bend")
+    return notes
 
 
 def unread_instances(stage: Usd.Stage) -> list[str]:
@@ -145,15 +170,20 @@ def together(arrays: list[np.ndarray | None]) -> np.ndarray | None:
     return np.concatenate(known) if len(known) == len(arrays) else None
 
 
-def of_vertices(prim: Usd.Prim, size: int, indices: np.ndarray, vertices: int, *names: str) -> np.ndarray | None:
+def of_vertices(
+    prim: Usd.Prim, size: int, indices: np.ndarray, vertices: int, notes: list[str], *names: str
+) -> np.ndarray | None:
     """The first of these primvars, with `size` numbers for each vertex: those of the first corner that uses it if they differ."""
     values, kind = primvar(prim, *names)
-    if values is None or values.ndim != 2 or values.shape[1] < size:
+    # One color for the whole mesh, or for each face, is a look.
+    if values is None or kind in ("constant", "uniform"):
         return None
-    if kind in ("vertex", "varying") and len(values) == vertices:
+    corners = kind == "faceVarying"
+    if values.ndim != 2 or values.shape[1] < size or len(values) != (len(indices) if corners else vertices):
+        notes.append(f"`{names[0]}` of {prim.GetPath()} does not have {size} numbers for each {'corner' if corners else 'vertex'}; left out")
+        return None
+    if not corners:
         return values[:, :size].astype(np.float32)
-    if kind != "faceVarying" or len(values) != len(indices):
-        return None
     out = np.zeros((vertices, size), np.float32)
     out[indices[::-1]] = values[::-1, :size]
     return out

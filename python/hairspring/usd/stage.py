@@ -89,9 +89,9 @@ DRAWN = ("default", "render")
 
 
 def is_drawn(prim: Usd.Prim) -> bool:
-    """Whether a prim is visible, and not a stand-in or a guide of the viewport."""
+    """Whether a prim is visible at first, and not a stand-in or a guide of the viewport."""
     image = UsdGeom.Imageable(prim)
-    return image.ComputePurpose() in DRAWN and image.ComputeVisibility() != "invisible"
+    return image.ComputePurpose() in DRAWN and image.ComputeVisibility(Usd.TimeCode.EarliestTime()) != "invisible"
 
 
 def all_prims(stage: Usd.Stage, kind) -> list[Usd.Prim]:
@@ -157,11 +157,15 @@ def primvar(prim: Usd.Prim, *names: str):
     """The first of these primvars that has a value, and its interpolation."""
     api = UsdGeom.PrimvarsAPI(prim)
     for name in names:
-        found = api.GetPrimvar(name)
+        # Constant primvars of parents count.
+        found = api.FindPrimvarWithInheritance(name)
         if found and found.HasValue():
             value = found.ComputeFlattened(first_time([found.GetAttr()]))
             if value is not None:
-                return np.atleast_1d(np.array(value)), str(found.GetInterpolation())
+                values = np.atleast_1d(np.array(value))
+                if values.dtype.kind not in "biuf":
+                    raise FormatError(f"the primvar `{name}` of {prim.GetPath()} holds {found.GetTypeName()}; write numbers")
+                return values, str(found.GetInterpolation())
     return None, ""
 
 

@@ -10,6 +10,7 @@ from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, Vt
 
 from ..description import Description, MovingGroom, identifier, publish
 from . import material
+from .instances import is_below_an_instancer
 from .stage import open_stage, quiet, space, world_of
 
 DEFORMABLE = "PhysicsCurvesDeformableSimAPI"
@@ -32,7 +33,7 @@ class CurvesWriter:
 
     def __init__(self, path: str | os.PathLike, description: Description, over: str | os.PathLike | None = None):
         self.path, self.description = Path(path), description
-        if self.path.suffix == ".usdz":
+        if self.path.suffix.lower() == ".usdz":
             raise ValueError("a .usdz package cannot be written frame by frame; write .usdc and package it with `usdzip`")
         self.pending = self.path.with_name(f".hairspring-{os.getpid()}-{self.path.name}")
         try:
@@ -44,8 +45,11 @@ class CurvesWriter:
             self.pending.unlink(missing_ok=True)
             raise OSError("the file cannot be created; check that its folder exists and that you may write there")
         self.stage = Usd.Stage.Open(self.layer)
-        # Curves, their points, and the transform to their own space, if it is not that of the file.
-        self.targets: list[tuple[UsdGeom.BasisCurves, slice, tuple[np.ndarray, np.ndarray] | None]] = []
+        # Curves, their points, and the prim in whose space they are, if that is not the space of the file.
+        self.targets: list[tuple[UsdGeom.BasisCurves, slice, Usd.Prim | None]] = []
+        # The stage below the layer, and the matrix from its unit and axes to meters and Y up.
+        self.base: Usd.Stage | None = None
+        self.to = np.eye(3)
         self.margin: dict[str, float] = {}
         try:
             self._begin(over)
@@ -81,36 +85,48 @@ class CurvesWriter:
             first += len(groom.points)
 
     def _override_all(self, over: Path) -> None:
-        base = open_stage(over)
+        base = self.base = open_stage(over)
+        self._check_time(over)
         UsdGeom.SetStageMetersPerUnit(self.stage, UsdGeom.GetStageMetersPerUnit(base))
         UsdGeom.SetStageUpAxis(self.stage, UsdGeom.GetStageUpAxis(base))
         self.layer.subLayerPaths.append(os.path.relpath(over, self.path.parent))
         if base.HasDefaultPrim():
             self.layer.defaultPrim = base.GetDefaultPrim().GetName()
-        to = space(base, None, None)
+        self.to = space(base, None, None)
         first = 0
         for groom in self.description.grooms:
-            groups = groom.groups if groom.groups is not None else np.zeros(len(groom.counts), int)
-            for g, name in enumerate(groom.group_names):
-                strands = np.flatnonzero(groups == g)
-                if len(strands) == 0:
-                    continue
-                prim = base.GetPrimAtPath(name) if name.startswith("/") else None
-                if not prim or prim.IsInstanceProxy():
-                    why = "is an instance" if prim else "is not in"
-                    raise ValueError(f"the curves {name} of the groom cannot be overridden: it {why} {over}")
-                own = slice(int(strands[0]), int(strands[-1]) + 1)
-                if len(strands) != own.stop - own.start:
-                    raise ValueError(f"the strands of {name} are not in one piece")
-                linear, shift = world_of(prim, Usd.TimeCode.EarliestTime(), to)
-                back = np.linalg.inv(linear)
+            for prim, own in curves_of(groom, base, over):
+                back, shift = self._own_space(prim, Usd.TimeCode.EarliestTime())
                 curves = UsdGeom.BasisCurves(self.stage.OverridePrim(prim.GetPath()))
-                self._describe(curves, groom, own, back, shift, complete=False)
                 points = slice(first + int(groom.offsets[own.start]), first + int(groom.offsets[own.stop]))
-                self.targets.append((curves, points, (back, shift)))
+                block_attributes(curves, UsdGeom.BasisCurves(prim), points.stop - points.start)
+                self._describe(curves, groom, own, back, shift, complete=False)
+                self.targets.append((curves, points, prim))
             first += len(groom.points)
         if not self.targets:
             raise ValueError(f"none of the grooms was read from {over}")
+
+    def _check_time(self, over: Path) -> None:
+        """Refuses a layer whose frames are not those of the stage, so that hair and body would move at different times."""
+        base, wanted = self.base, self.description
+        rate = base.GetTimeCodesPerSecond()
+        if not base.HasAuthoredTimeCodeRange() or base.GetStartTimeCode() >= base.GetEndTimeCode():
+            return
+        if abs(rate - wanted.fps) > 1e-3 * rate:
+            raise ValueError(f"{over} has {rate:g} frames a second and the bake {wanted.fps:g}; bake with --fps {rate:g}")
+        if not base.GetStartTimeCode() <= wanted.first_frame <= base.GetEndTimeCode():
+            begin, end = base.GetStartTimeCode(), base.GetEndTimeCode()
+            raise ValueError(
+                f"{over} moves in the frames {begin:g} to {end:g}, and the bake begins at {wanted.first_frame:g}; bake with"
+                f" --start {begin:g} --frames {begin:g}-{end:g}"
+            )
+
+    def _own_space(self, prim: Usd.Prim, time: Usd.TimeCode) -> tuple[np.ndarray, np.ndarray]:
+        """The matrix from meters and Y up to the space of a prim at a time, and the translation before it."""
+        linear, shift = world_of(prim, time, self.to)
+        if abs(np.linalg.det(linear)) < 1e-12:
+            raise ValueError(f"{prim.GetPath()} is scaled to 0, so its curves have no size; give it another scale")
+        return np.linalg.inv(linear), shift
 
     def _describe(self, curves, groom: MovingGroom, own: slice, back, shift, complete: bool) -> None:
         """Writes what does not change."""
@@ -157,7 +173,9 @@ class CurvesWriter:
     def _bind_materials(self, curves: UsdGeom.BasisCurves, groom: MovingGroom, own: slice) -> None:
         """Binds the physics material of the first group to the curves. Where there are several groups, each has a material
         bind subset of its own segments."""
-        path = curves.GetPath().GetParentPath().AppendChild(f"{curves.GetPrim().GetName()}_physics")
+        path, n = curves.GetPath().GetParentPath().AppendChild(f"{curves.GetPrim().GetName()}_physics"), 2
+        while self.base and self.base.GetPrimAtPath(path):
+            path, n = path.ReplaceName(f"{curves.GetPrim().GetName()}_physics_{n}"), n + 1
         groups = groom.groups[own] if groom.groups is not None else np.zeros(own.stop - own.start, int)
         used = np.unique(groups)
         radii = groom.radii[int(groom.offsets[own.start]) : int(groom.offsets[own.stop])]
@@ -181,7 +199,9 @@ class CurvesWriter:
         for curves, own, space_of in self.targets:
             placed, moved = points[own], velocities[own]
             if space_of:
-                back, shift = space_of
+                # The parents of the curves may move.
+                rate = self.base.GetTimeCodesPerSecond() / self.description.fps
+                back, shift = self._own_space(space_of, Usd.TimeCode(frame * rate))
                 placed = np.ascontiguousarray((placed.astype(np.float64) - shift) @ back, np.float32)
                 moved = np.ascontiguousarray(moved.astype(np.float64) @ back, np.float32)
             curves.GetPointsAttr().Set(Vt.Vec3fArray.FromNumpy(placed), time)
@@ -195,7 +215,7 @@ class CurvesWriter:
         try:
             self._save()
             self.targets.clear()
-            self.stage = self.layer = None
+            self.stage = self.layer = self.base = None
             publish(self.pending, self.path)
         except BaseException:
             self.discard()
@@ -213,5 +233,49 @@ class CurvesWriter:
     def discard(self) -> None:
         """Removes what was written."""
         self.targets.clear()
-        self.stage = self.layer = None
+        self.stage = self.layer = self.base = None
         self.pending.unlink(missing_ok=True)
+
+
+def curves_of(groom: MovingGroom, base: Usd.Stage, over: Path) -> list[tuple[Usd.Prim, slice]]:
+    """The prims of a stage that a groom was read from, each with its strands."""
+    prims = []
+    for name in groom.group_names:
+        prim = base.GetPrimAtPath(name) if name.startswith("/") else None
+        if not prim or prim.IsInstanceProxy():
+            why = "is an instance" if prim else "is not in"
+            raise ValueError(f"the curves {name} of the groom cannot be overridden: it {why} {over}")
+        if is_below_an_instancer(prim):
+            raise ValueError(f"the curves {name} of the groom cannot be overridden: a PointInstancer copies them; export each copy")
+        prims.append(prim)
+    total = len(groom.counts)
+    if any(UsdGeom.PrimvarsAPI(prim).GetPrimvar("groom_group_id").HasValue() for prim in prims):
+        # The groups are those of the file, and the strands of the prims follow one another.
+        sizes = [len(UsdGeom.Curves(p).GetCurveVertexCountsAttr().Get(Usd.TimeCode.EarliestTime()) or []) for p in prims]
+        if sum(sizes) != total:
+            raise ValueError(f"the groom has {total} strands, and its curves in {over} have {sum(sizes)}; simulate all of them, unchanged")
+        ends = np.cumsum([0, *sizes])
+        return [(prim, slice(int(a), int(b))) for prim, a, b in zip(prims, ends, ends[1:]) if b > a]
+    groups = groom.groups if groom.groups is not None else np.zeros(total, int)
+    found = []
+    for g, prim in enumerate(prims):
+        strands = np.flatnonzero(groups == g)
+        if len(strands) == 0:
+            continue
+        own = slice(int(strands[0]), int(strands[-1]) + 1)
+        if len(strands) != own.stop - own.start:
+            raise ValueError(f"the strands of {prim.GetPath()} are not in one piece")
+        found.append((prim, own))
+    return found
+
+
+def block_attributes(curves: UsdGeom.BasisCurves, base: UsdGeom.BasisCurves, points: int) -> None:
+    """Blocks the attributes of curves that have a value for each point, where the number of points changes: that of cubic curves
+    does. `primvars:widths` would count before the widths that are written."""
+    before = len(base.GetPointsAttr().Get(Usd.TimeCode.EarliestTime()) or [])
+    for own in UsdGeom.PrimvarsAPI(base).GetPrimvarsWithAuthoredValues():
+        along = own.GetInterpolation() in (UsdGeom.Tokens.vertex, UsdGeom.Tokens.varying)
+        if own.GetPrimvarName() == "widths" or along and before != points:
+            curves.GetPrim().CreateAttribute(own.GetName(), own.GetTypeName(), False).Block()
+    if before != points and base.GetNormalsAttr().HasAuthoredValue():
+        curves.CreateNormalsAttr().Block()

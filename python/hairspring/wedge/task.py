@@ -53,7 +53,7 @@ def simulate_variant(task: dict) -> dict:
             before = json.loads(done.read_text())
         except ValueError:
             before = {}
-        if before.get("key") == key and all((folder / name).exists() for name in before.get("files", [])):
+        if isinstance(before, dict) and before.get("key") == key and all((folder / name).exists() for name in before.get("files", [])):
             return before | {"kept": True}
     # A bake that was interrupted continues, unless something has changed since.
     started = folder / "started.txt"

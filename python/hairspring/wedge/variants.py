@@ -36,6 +36,9 @@ def values_of(text: str) -> tuple[str, list[str]]:
 def variants(options: argparse.Namespace) -> list[Variant]:
     """All combinations, with names that are unique and safe as folders."""
     keys = [values_of(text) for text in options.set]
+    for k, (key, _) in enumerate(keys):
+        if any(key == other for other, _ in keys[:k]):
+            raise UsageError(f"--set {key} is given twice; name all of its values at one place, such as --set {key}=2,4")
     found = []
     for scene in options.scenes:
         for clip in options.clip or [None]:
