@@ -125,6 +125,15 @@ def test_a_copied_prim_and_a_prim_of_no_size_are_refused(tmp_path):
         layer_over(tmp_path / "o.usda", tmp_path / "b.usda")
 
 
+def test_hair_of_another_size_is_refused(tmp_path):
+    base = new_stage(tmp_path / "a.usda")
+    define_curves(base, "/hair", *tuft())
+    base.Save()
+    groom = groom_of(usd.read_curves(tmp_path / "a.usda", scale=0.01))
+    with pytest.raises(ValueError, match="the groom is 0.01 times as large as its curves /hair"):
+        usd.CurvesWriter(tmp_path / "o.usda", Description(24, 1, 1, [groom]), over=tmp_path / "a.usda")
+
+
 def test_a_material_keeps_the_names_of_the_stage(tmp_path):
     base = new_stage(tmp_path / "a.usda")
     define_curves(base, "/hair", *tuft())

@@ -97,6 +97,7 @@ class CurvesWriter:
         for groom in self.description.grooms:
             for prim, own in curves_of(groom, base, over):
                 back, shift = self._own_space(prim, Usd.TimeCode.EarliestTime())
+                check_size(prim, groom.points[groom.offsets[own]], np.linalg.inv(back), over)
                 curves = UsdGeom.BasisCurves(self.stage.OverridePrim(prim.GetPath()))
                 points = slice(first + int(groom.offsets[own.start]), first + int(groom.offsets[own.stop]))
                 block_attributes(curves, UsdGeom.BasisCurves(prim), points.stop - points.start)
@@ -267,6 +268,23 @@ def curves_of(groom: MovingGroom, base: Usd.Stage, over: Path) -> list[tuple[Usd
             raise ValueError(f"the strands of {prim.GetPath()} are not in one piece")
         found.append((prim, own))
     return found
+
+
+def check_size(prim: Usd.Prim, roots: np.ndarray, linear: np.ndarray, over: Path) -> None:
+    """Refuses a groom that was read in another unit than that of the stage, by the extent of its roots [m]. `linear` maps the space
+    of the prim to meters."""
+    curves = UsdGeom.Curves(prim)
+    first, counts = (a.Get(Usd.TimeCode.EarliestTime()) or [] for a in (curves.GetPointsAttr(), curves.GetCurveVertexCountsAttr()))
+    starts = np.cumsum([0, *counts])[:-1]
+    if len(first) == 0 or len(starts) == 0 or starts[-1] >= len(first):
+        return
+    own = np.array(first, np.float64)[starts] @ linear
+    sizes = [float(np.linalg.norm(np.ptp(places, axis=0))) for places in (roots, own)]
+    # Thinned hair covers a little less.
+    if min(sizes) > 0 and not 0.3 < sizes[0] / sizes[1] < 3:
+        raise ValueError(
+            f"the groom is {sizes[0] / sizes[1]:.3g} times as large as its curves {prim.GetPath()} in {over}; read it without `scale`"
+        )
 
 
 def block_attributes(curves: UsdGeom.BasisCurves, base: UsdGeom.BasisCurves, points: int) -> None:
