@@ -136,7 +136,7 @@ def test_every_attribute_of_unreals_schema_has_its_name_and_interpolation_in_usd
     names = set(UNREAL) - {"groom_color", "groom_width"} | {"groom_guide"}
     assert {name: found.get(name) for name in names} == dict.fromkeys(names, "uniform")
     assert found["displayColor"] == "vertex" and UsdGeom.Curves(prim).GetWidthsInterpolation() == "vertex"
-    # The names of the proposal for deformable curves of the Alliance for OpenUSD.
+    # The proposal of the Alliance for OpenUSD for curves that deform has these names.
     assert "PhysicsCurvesDeformableSimAPI" in prim.GetMetadata("apiSchemas").GetAddedOrExplicitItems()
     assert prim.GetAttribute("physics:restShapePoints").HasAuthoredValue()
 

@@ -14,7 +14,7 @@
 //! tabs; a cell in quotation marks may contain them. The points of a strand are consecutive, root first.
 
 use crate::{
-    Place, Problem, color,
+    Place, Problem,
     strand_attributes::{GROUP, NUMBERS, StrandAttributes},
     strands::Read,
     text::{as_text, name},
@@ -129,7 +129,6 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     if last.is_some() {
         groom.offsets.push(groom.points.len() as u32);
     }
-    notes.extend(color::into_range(&mut groom.colors));
     let radii = columns.radius.map(|_| radii);
     let mut read = Read { groom, radii, true_radii: false, units: FileUnits::default(), notes };
     attributes.apply(&mut read);

@@ -8,7 +8,6 @@ use super::{
 use crate::{
     Place, Problem,
     chains::{self, Chains},
-    color,
     strands::Read,
     text,
     units::FileUnits,
@@ -270,12 +269,6 @@ impl Build<'_> {
                 );
             }
         }
-        notes.extend(color::into_range(&mut groom.colors));
-        let mut note = |count: usize, text: &str| {
-            if count > 0 {
-                notes.push(format!("{count} {text}"));
-            }
-        };
         let radii = (found.thick == found.lines).then_some(radii);
         if radii.is_none() && found.thick > 0 {
             note(

@@ -16,7 +16,6 @@ mod rows;
 use crate::{
     Place, Problem,
     chains::{self, Chains},
-    color,
     strands::Read,
     text,
     units::FileUnits,
@@ -212,7 +211,6 @@ fn strands_of(header: &Header, vertices: &[Vertex], indices: Indices, source: So
     let mut notes = Vec::new();
     if has_color {
         groom.colors = points().map(|v| v.color).collect();
-        notes.extend(color::into_range(&mut groom.colors));
     }
     let used = |name: &str| match name {
         "x" | "y" | "z" | "radius" => true,

@@ -10,6 +10,7 @@ mod example_meshes_are_made_by_code;
 mod gltf_files_of_exporters_are_read;
 mod gltf_lines_are_strands;
 mod gltf_morph_targets_move_the_body;
+mod gltf_motions_keep_their_keys;
 mod grooms_fit_the_body;
 mod grooms_round_trip;
 mod headless_bake_runs;

@@ -75,7 +75,7 @@ fn scene_files_give_the_scene_they_describe() {
     "#;
     let Loaded { value: scene, notes, .. } = read(folder.path(), text).unwrap();
     assert_eq!((scene.name.as_str(), scene.gravity), ("scene", Vec3::new(0.0, -1.6, 0.0)));
-    // The placement puts the hair beside the body, and the file has one group.
+    // The transform of the groom moves the roots away from the skin. The file has one group.
     assert!(notes.len() == 2 && notes[0].contains("from the skin"), "{notes:?}");
     assert!(notes[1].contains("1 groups and `material` names 2 materials"), "{notes:?}");
     let body = scene.body.as_ref().unwrap();
