@@ -368,10 +368,16 @@ impl StagedBody {
         self.initial_pushes.iter().any(|push| push.collider == k)
     }
 
-    /// Returns the current poses of the colliders in which hair may stay as deep as it is authored.
+    /// Returns the current poses of the colliders in which hair may stay as deep as it is authored. The others are empty,
+    /// so that each keeps its index.
     pub(super) fn keeping_poses(&self) -> Vec<ColliderPose> {
-        let keeping = self.colliders.iter().enumerate().filter(|(k, _)| !self.pushes(*k));
-        keeping.map(|(_, collider)| collider.end_pose()).collect()
+        let mut poses = self.poses();
+        for push in &self.initial_pushes {
+            let pose = RigidTransform::default();
+            poses[push.collider] =
+                MovingCollider::at_rest(SurfaceKind::Field(0.0).nothing(), pose).end_pose();
+        }
+        poses
     }
 
     /// Returns the colliders of the scene's sheets and those listed in the scene, without the body's meshes: those that

@@ -14,6 +14,7 @@ mod initial_push;
 mod join_grooms;
 mod joints;
 mod manipulators;
+mod notes;
 mod preroll;
 mod reach;
 mod rigid_parts;

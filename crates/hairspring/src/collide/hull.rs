@@ -55,6 +55,14 @@ impl Face {
 }
 
 impl Hull {
+    /// Returns the smallest width across one of its faces [m]: that of a plate is its thickness.
+    #[must_use]
+    pub fn thickness(&self) -> f32 {
+        let corners = || self.triangles().flatten();
+        let depth = |face: &Face| corners().map(|p| -face.height(p)).fold(0.0, f32::max);
+        self.faces.iter().map(depth).fold(f32::INFINITY, f32::min)
+    }
+
     /// Creates the convex hull of points [m]. Returns `None` if they span no volume. Points that are not
     /// finite are ignored.
     pub fn new(points: &[Vec3]) -> Option<Self> {

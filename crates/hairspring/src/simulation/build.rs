@@ -85,6 +85,7 @@ impl Simulation {
             rest: vec![[Row::default(); rest::ROWS]; first as usize],
             along: Vec::new(),
             rest_penetration: Vec::new(),
+            passes: Vec::new(),
             tethers: Vec::new(),
             tensions: Default::default(),
             longest: strands.iter().map(|s| groom.strand_length(*s as usize)).fold(0.0, f32::max),
@@ -122,6 +123,7 @@ impl Simulation {
         let mut simulation = Simulation::with_parts(Arc::new(model), state);
         simulation.fill(colliders);
         let rest_penetration = simulation.authored_depths(colliders);
+        let passes = simulation.authored_passes(colliders);
         let tethers = simulation.tethers();
         let along = along::constants(&simulation.model);
         let springs = simulation.model.tiles.iter().any(|tile| tile.model == Elastic::Springs);
@@ -130,7 +132,7 @@ impl Simulation {
         let model = Arc::make_mut(&mut simulation.model);
         model.start.coils = coils;
         (model.tensions, model.rest_penetration, model.tethers) = (tensions, rest_penetration, tethers);
-        model.along = along;
+        (model.along, model.passes) = (along, passes);
         simulation
     }
 

@@ -146,7 +146,9 @@ impl<'a> SimulationBuilder<'a> {
         self
     }
 
-    /// Sets the colliders at rest. Points that start inside may stay at their depth. Default: none.
+    /// Sets the colliders at rest. Points that start inside may stay at their depth. A point that starts more than 5 mm
+    /// inside a [`Field`](crate::collide::ColliderShape::Field) does not touch the collider of the same index in a step.
+    /// Default: none.
     pub fn colliders_at_rest(mut self, colliders: &'a [ColliderPose]) -> Self {
         self.colliders = colliders;
         self

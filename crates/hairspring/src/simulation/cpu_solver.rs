@@ -42,6 +42,7 @@ impl StrandSolver for CpuSolver {
             anisotropic_drag: &forces.anisotropic_drag,
             wind_delta: &forces.wind_delta,
             rest_penetration: &model.rest_penetration,
+            passes: &model.passes,
             segment_contacts: if frame.segments { &mut state.segment_contacts[..] } else { &mut [] },
             tether_lengths: &model.tethers,
         };

@@ -27,7 +27,7 @@ pub struct Measure {
     pub inside_points: usize,
     /// Depth of the deepest of these points below its authored depth [m].
     pub max_depth: f64,
-    /// Points of these that are no deeper than they were authored.
+    /// Points of these that are no deeper than they were authored, or were authored more than 5 mm inside a mesh.
     pub started_inside_points: usize,
     /// Depth of the deepest of those [m].
     pub started_inside_depth: f64,
@@ -57,7 +57,7 @@ pub struct Measure {
 }
 
 impl Simulation {
-    /// Measures the state against the colliders at the end of their frame.
+    /// Measures the state against the colliders at the end of their frame, in the order of the steps.
     pub fn measure(&self, colliders: &[MovingCollider]) -> Measure {
         let poses: Vec<_> = colliders.iter().map(|o| (o, o.end)).collect();
         let (sum, segments, figures) = self
@@ -117,7 +117,8 @@ impl Simulation {
             if i % stride == 0 && i >= 2 * stride {
                 let clearance = strand.clearance(i);
                 let depth = near(poses, root + x, clearance)
-                    .map(|(o, pose)| clearance - o.shape.distance(pose.inverse_point(root + x)))
+                    .filter(|(k, ..)| !strand.passes(i, *k))
+                    .map(|(_, o, pose)| clearance - o.shape.distance(pose.inverse_point(root + x)))
                     .fold(0.0, f32::max) as f64;
                 out.max_depth = out.max_depth.max(depth);
                 out.inside_points += (depth > INSIDE) as usize;
@@ -128,7 +129,10 @@ impl Simulation {
                 let [a, b] = [root + before, root + x];
                 let begins_held = i == 2 * stride;
                 let (mut depth, mut held) = (0f64, 0f64);
-                for (o, pose) in near(poses, a.midpoint(b), authored + 0.5 * a.distance(b)) {
+                for (k, o, pose) in near(poses, a.midpoint(b), authored + 0.5 * a.distance(b)) {
+                    if strand.passes(i, k) || strand.passes(i - stride, k) {
+                        continue;
+                    }
                     let [a, b] = [a, b].map(|p| pose.inverse_point(p));
                     let least = o.shape.least_distance(a, b);
                     let begins = if begins_held { o.shape.distance(a).min(authored) } else { authored };
@@ -167,7 +171,7 @@ impl Measure {
 
     /// Counts the point `p` [m], which was authored inside a collider, if it is inside one.
     fn count_started_inside(&mut self, poses: &[(&MovingCollider, RigidTransform)], p: Vec3) {
-        let depth = near(poses, p, 0.0).map(|(o, pose)| -o.shape.distance(pose.inverse_point(p)));
+        let depth = near(poses, p, 0.0).map(|(_, o, pose)| -o.shape.distance(pose.inverse_point(p)));
         let depth = f64::from(depth.fold(0.0, f32::max));
         if depth > INSIDE {
             self.inside_points += 1;
@@ -177,13 +181,14 @@ impl Measure {
     }
 }
 
-/// Returns the colliders that may be nearer to `p` than `reach` [m], by their bounding spheres.
+/// Returns the colliders that may be nearer to `p` than `reach` [m], by their bounding spheres: index, collider and pose.
 fn near<'a>(
     poses: &'a [(&MovingCollider, RigidTransform)],
     p: Vec3,
     reach: f32,
-) -> impl Iterator<Item = &'a (&'a MovingCollider, RigidTransform)> {
-    poses.iter().filter(move |(o, pose)| {
+) -> impl Iterator<Item = (usize, &'a MovingCollider, RigidTransform)> {
+    let all = poses.iter().enumerate().map(|(k, (o, pose))| (k, *o, *pose));
+    all.filter(move |(_, o, pose)| {
         let (center, radius) = o.shape.bounds();
         // A margin for the rounding of the sphere.
         pose.point(center).distance(p) <= 1.0001 * (radius + reach.max(0.0))

@@ -38,6 +38,9 @@ pub(crate) struct StrandModel {
     /// Authored depth of the segment that ends at each point, 0 or less [m]; as long as `rest`, or empty if no
     /// segment was authored inside a collider.
     pub(super) rest_penetration: Vec<Row>,
+    /// 1 + index of the collider that each point does not touch, because it was authored deep inside; 0 for the other
+    /// points. As long as `rest`, or empty if there is no such point.
+    pub(super) passes: Vec<Row>,
     /// Largest distance of each point from its root [m]; empty if no material has a tether.
     pub(super) tethers: Vec<Row>,
     /// Tensions of the rest shape: of segments and, in the springs model, of the triangles' sides. Shapes as

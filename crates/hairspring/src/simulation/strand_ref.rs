@@ -268,6 +268,12 @@ impl<'a> StrandRef<'a> {
     pub fn rest_penetration(self, i: usize) -> f32 {
         self.model.rest_penetration.get(self.at(i)).map_or(0.0, |row| row.0[self.lane % LANES])
     }
+
+    /// Returns whether particle `i` passes through the collider with index `k`, because it was authored deep inside.
+    pub fn passes(self, i: usize, k: usize) -> bool {
+        let passes = |row: &Row| row.0[self.lane % LANES] == (k + 1) as f32;
+        self.model.passes.get(self.at(i)).is_some_and(passes)
+    }
 }
 
 /// One strand, for writing.

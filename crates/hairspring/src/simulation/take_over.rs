@@ -41,11 +41,11 @@ impl Simulation {
         self.force_fields.clone_from(&old.force_fields);
         self.frame.segments = old.frame.segments;
         self.state.charged.clone_from(&old.state.charged);
-        Arc::make_mut(&mut self.model).rest_penetration = if old.model.rest_penetration.is_empty() {
-            Vec::new()
-        } else {
-            vec![Row::default(); self.state.points.len()]
-        };
+        let points = self.state.points.len();
+        let as_long = |was: &[Row]| vec![Row::default(); if was.is_empty() { 0 } else { points }];
+        let model = Arc::make_mut(&mut self.model);
+        model.rest_penetration = as_long(&old.model.rest_penetration);
+        model.passes = as_long(&old.model.passes);
         let mut lanes = vec![u32::MAX; old.model.groom_strands.len()];
         for k in 0..self.model.lane_of_strand.len() {
             let (place, from) = (self.model.lane_of_strand[k] as usize, old.model.lane_of_strand[k] as usize);
@@ -95,6 +95,9 @@ impl Simulation {
             if let Some(authored) = model.rest_penetration.get_mut(to) {
                 authored.0[lane] = old.model.rest_penetration[from].0[from_lane];
             }
+            if let Some(passes) = model.passes.get_mut(to) {
+                passes.0[lane] = old.model.passes[from].0[from_lane];
+            }
             if let (true, Some(span), Some(was)) =
                 (forces, self.state.segment_contacts.get_mut(to), old.state.segment_contacts.get(from))
             {
@@ -129,6 +132,9 @@ impl Simulation {
             }
             if let Some(authored) = model.rest_penetration.get_mut(at) {
                 authored.0[place % LANES] = source.rest_penetration(i_was);
+            }
+            if let Some(passes) = model.passes.get_mut(at) {
+                passes.0[place % LANES] = old.model.passes[was_at].0[from % LANES];
             }
             if let (true, Some(span), Some(was)) =
                 (forces, self.state.segment_contacts.get_mut(at), old.state.segment_contacts.get(was_at))

@@ -27,7 +27,7 @@ use super::{
     tile::{Tile, rest, state},
 };
 use crate::collide::ColliderPose;
-use crate::simd::lanes::{F, Simd, Sym3, V3, Work, load, store};
+use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, Work, load, store};
 
 /// Rows of scratch a point. They are written where at least one of the eight points is in contact.
 pub mod scratch {
@@ -65,7 +65,7 @@ pub fn assemble_contact<S: Simd, const B: usize>(
         return;
     }
     let Surface { distance: mut gap, mut normal, carried } =
-        nearest(simd, step.colliders, x + step.root.position);
+        nearest(simd, step.colliders, x + step.root.position, [passes(simd, tile, i); 2]);
     gap -= load(simd, &tile.rest[i][rest::CLEARANCE]);
 
     // The contact is closed while N could close the gap within a substep. Points farther away are released.
@@ -97,6 +97,19 @@ pub fn assemble_contact<S: Simd, const B: usize>(
     );
 }
 
+/// Returns 1 + the index of the collider that point `i` passes through, because it was authored deep inside, or 0.
+#[inline(always)]
+pub fn passes<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
+    tile.passes.get(i).map_or(F::splat(simd, 0.0), |row| load(simd, row))
+}
+
+/// Returns where the collider with index `k` is one of the two that [`passes`] returned.
+#[inline(always)]
+pub fn is_passed<S: Simd>([a, b]: [F<S>; 2], k: usize) -> Mask<S> {
+    let number = (k + 1) as f32;
+    a.simd_eq(number) | b.simd_eq(number)
+}
+
 /// The nearest surface, as seen from eight places.
 pub struct Surface<S: Simd> {
     /// Distance, negative inside [m].
@@ -107,17 +120,18 @@ pub struct Surface<S: Simd> {
     pub carried: V3<S>,
 }
 
-/// Finds the surface nearest to `world`. Not inlined: all models and sweeps share one copy.
+/// Finds the surface nearest to `world`, without the colliders that are `passed`. Not inlined: all models and sweeps
+/// share one copy.
 #[inline(never)]
-pub fn nearest<S: Simd>(simd: S, colliders: &[ColliderPose], world: V3<S>) -> Surface<S> {
+pub fn nearest<S: Simd>(simd: S, colliders: &[ColliderPose], world: V3<S>, passed: [F<S>; 2]) -> Surface<S> {
     simd.vectorize(
         #[inline(always)]
         || {
             let zero = V3::zero(simd);
             let mut surface = Surface { distance: F::splat(simd, f32::MAX), normal: zero, carried: zero };
-            for pose in colliders {
+            for (k, pose) in colliders.iter().enumerate() {
                 let (distance, normal) = contact(simd, pose, world);
-                let nearest = distance.simd_lt(surface.distance);
+                let nearest = distance.simd_lt(surface.distance) & !is_passed(passed, k);
                 let carried = surface_displacement(simd, pose, world);
                 surface.distance = nearest.select(distance, surface.distance);
                 surface.normal = V3::select(nearest, normal, surface.normal);

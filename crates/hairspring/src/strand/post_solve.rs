@@ -15,6 +15,7 @@
 use super::{
     assemble::SubstepContext,
     colliders::{self, contact, segment_may_intersect, surface_displacement},
+    contact::{is_passed, passes},
     friction::Friction,
     scratch::Scratch,
     segment::{resolve_segment_contact, segment_tolerance},
@@ -112,6 +113,8 @@ pub fn post_solve<S: Simd>(
     }
     // Correction of the previous point relative to the integrator's result.
     let mut shift = V3::zero(simd);
+    // Where the previous point may be inside a collider, because the root drives it or because it could not get out.
+    let mut buried = Mask::splat(simd, true);
     let mut i = 2 * stride;
     while i < tile.rest.len() {
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
@@ -124,16 +127,22 @@ pub fn post_solve<S: Simd>(
         // A branch: a segment depends on the previous one only where a correction is needed.
         let world = step.root.position + (at.x + e);
         let wrong = link.wrong(e) | exceeds_lra(simd, tile, i, at.x + e);
+        let before = std::mem::replace(&mut buried, Mask::splat(simd, false));
         if needs_contact_test(simd, step, tile, (i, world, e)) || wrong.any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             // Copies are passed, as for the tile. Passing the originals by reference would force the compiler
             // to keep them in memory at every point.
             let (at, link) = (at, SegmentLimit { ..link });
-            e = V3::select(
-                free,
-                resolve_contacts(simd, finish, step, &mut tile.reborrow(), (i, stride, e), (&at, &link)),
-                e,
+            let (out, inside) = resolve_contacts(
+                simd,
+                finish,
+                step,
+                &mut tile.reborrow(),
+                (i, stride, e),
+                (&at, &link, before),
             );
+            e = V3::select(free, out, e);
+            buried = inside | !free;
             shift = e - solved;
             // A held point has no contact.
             let keep = |rows: &mut [Row]| {
@@ -193,7 +202,10 @@ fn needs_contact_test<S: Simd>(
 }
 
 /// Returns the corrected offset `e` of point `i` from the strand's previous point `at`: within the limits of
-/// its segment and outside of every collider.
+/// its segment and outside of every collider. Also returns where it could not get out.
+///
+/// Where the previous point may be `buried`, the point cannot be farther out than that allows. It is moved as far out as
+/// it can be, and has no contact force, which would grow without bound.
 ///
 /// Not inlined: most segments do not need it, and otherwise each combination of model, integrator and sweep
 /// would contain the code of all collider shapes.
@@ -204,8 +216,8 @@ fn resolve_contacts<S: Simd>(
     step: &SubstepContext<S>,
     tile: &mut Tile,
     segment: (usize, usize, V3<S>),
-    from: (&Particle<S>, &SegmentLimit<S>),
-) -> V3<S> {
+    from: (&Particle<S>, &SegmentLimit<S>, Mask<S>),
+) -> (V3<S>, Mask<S>) {
     simd.vectorize(
         #[inline(always)]
         || project_particle(simd, finish, step, tile, segment, from),
@@ -219,8 +231,8 @@ fn project_particle<S: Simd>(
     step: &SubstepContext<S>,
     tile: &mut Tile,
     (i, stride, e): (usize, usize, V3<S>),
-    (at, link): (&Particle<S>, &SegmentLimit<S>),
-) -> V3<S> {
+    (at, link, buried): (&Particle<S>, &SegmentLimit<S>, Mask<S>),
+) -> (V3<S>, Mask<S>) {
     let friction = Friction::of(simd, step.h, tile, i);
     let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
     let mut old = V3::load(simd, &tile.state[i][state::EDGE..]);
@@ -232,10 +244,20 @@ fn project_particle<S: Simd>(
     // Summed relative to the root, as in `contact`. In world coordinates far from the origin, every sum would
     // lose precision.
     let in_world = |e: V3<S>| step.root.position + (at.x + e);
-    for pose in step.colliders {
+    let mut left_inside = Mask::splat(simd, false);
+    let passed = [passes(simd, tile, i - stride), passes(simd, tile, i)];
+    for (k, pose) in step.colliders.iter().enumerate() {
         let world = in_world(e);
         let (distance, normal) = contact(simd, pose, world);
-        let depth = (clearance - distance).max(0.0);
+        let free = is_passed([passed[1]; 2], k);
+        // Distance of the previous point, and the farthest out that this one can be.
+        let mut before = F::<S>::splat(simd, f32::MAX);
+        if buried.any_true() {
+            before = buried.select(contact(simd, pose, step.root.position + at.x).0, before);
+        }
+        let allowed = clearance.min(before + link.length);
+        let unreachable = allowed.simd_lt(clearance) & !free;
+        let depth = free.select(F::splat(simd, 0.0), (allowed - distance).max(0.0));
         let inside = depth.simd_gt(0.0);
         let mut caught = Mask::splat(simd, false);
         if inside.any_true() {
@@ -258,7 +280,7 @@ fn project_particle<S: Simd>(
             let mut wall = V3::zero(simd);
             for correction in 0..=CORRECTIONS {
                 let (distance, normal) = contact(simd, pose, in_world(q));
-                let left = (clearance - distance).max(0.0);
+                let left = (allowed - distance).max(0.0);
                 let still = inside & left.simd_gt(link.slack());
                 if !still.any_true() {
                     break;
@@ -284,12 +306,15 @@ fn project_particle<S: Simd>(
                 tile,
                 (i, old, e),
                 (at, link),
-                (distance, caught),
+                (distance, caught, is_passed(passed, k)),
+                before,
             );
         }
+        press = unreachable.select(F::splat(simd, 0.0), press);
+        left_inside |= caught | unreachable;
     }
     store(press, &mut tile.state[i][state::NORMAL_FORCE]);
-    e
+    (e, left_inside)
 }
 
 /// Smallest sine between a wall and the way out along it. It bounds the correction of points that are caught
@@ -306,7 +331,6 @@ const WEDGE: f32 = 0.25;
 ///    wall ╲   ↗╱ surface    straight out of one wall of a crease leads into the other and back;
 ///          ╲ ● ╱            moving out along the other wall satisfies both
 ///           ╲ ╱
-/// ```
 /// ```
 #[inline(always)]
 pub fn out_of<S: Simd>(simd: S, normal: V3<S>, wall: V3<S>) -> (V3<S>, F<S>) {

@@ -89,7 +89,8 @@ pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
 /// solve is updated.
 ///
 /// `distance` is the point's distance from the surface before its own correction [m]. Points that are
-/// `caught` are still inside.
+/// `caught` are still inside. Segments at a point that passes through the collider are `free`. `before` is the distance of
+/// the inner end from the surface, where that end may be inside [m].
 #[inline(always)]
 pub fn resolve_segment_contact<S: Simd>(
     simd: S,
@@ -97,18 +98,26 @@ pub fn resolve_segment_contact<S: Simd>(
     tile: &mut Tile,
     (i, old, e): (usize, V3<S>, V3<S>),
     (inner, link): (&Particle<S>, &SegmentLimit<S>),
-    (distance, caught): (F<S>, Mask<S>),
+    (distance, caught, free): (F<S>, Mask<S>, Mask<S>),
+    before: F<S>,
 ) -> V3<S> {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let a = step.root.position + inner.x;
-    let clear = -segment_tolerance(simd, tile, i);
+    let tolerated = -segment_tolerance(simd, tile, i);
+    // No motion of the segment takes its inner end out, and a force on it would grow without bound.
+    let held = before.simd_lt(tolerated);
+    let clear = held.select(before, tolerated);
+    if held.any_true() {
+        let row = &mut tile.segment_contacts[i][segment_contact::FORCE];
+        store(held.select(zero, load(simd, row)), row);
+    }
     // A segment whose end is farther from the surface than the segment is long has no place inside, because
     // distance is 1-Lipschitz. The exception is a field sampled on the two sides of a thin wall, where a
     // place near the inner end may be missed.
     let far = distance.max(0.0);
-    let mut may = caught | (far * far).simd_lt(e.dot(e));
+    let mut may = (caught | (far * far).simd_lt(e.dot(e))) & !free;
     if may.any_true() {
-        may = caught | segment_may_penetrate(simd, pose, (a + e, e), -clear);
+        may = (caught | segment_may_penetrate(simd, pose, (a + e, e), -clear)) & !free;
     }
     if !may.any_true() {
         return e;
@@ -118,7 +127,7 @@ pub fn resolve_segment_contact<S: Simd>(
     let edges = pose.edges.as_ref().filter(thin);
     let side = edges.map(|edges| {
         let mut side = edges.side(simd, (a - inner.displacement, old), -(clear + clear));
-        side.known &= link.length.simd_gt(2.0 * edges.half_thickness());
+        side.known &= link.length.simd_gt(2.0 * edges.half_thickness()) & !held;
         (edges, side)
     });
     // A rod that is left near the inner end would be past the segment before the next solve.
@@ -199,7 +208,7 @@ pub fn resolve_segment_contact<S: Simd>(
             let rows = &mut tile.segment_contacts[i];
             let force = load(simd, &rows[segment_contact::FORCE]);
             let deep = (clear - pressed.distance).max(0.0);
-            let pressing = pressing & deep.simd_gt(end);
+            let pressing = pressing & deep.simd_gt(end) & !held;
             let more = pressing.select(finish.pressed(force, mass, deep, approach), force);
             store(more, &mut rows[segment_contact::FORCE]);
             let at = load(simd, &rows[segment_contact::AT]);

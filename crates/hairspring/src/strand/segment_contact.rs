@@ -8,7 +8,7 @@ use super::{
     assemble::{Linearization, SubstepContext},
     colliders::{contact, find_deepest_point, surface_displacement},
     contact::{
-        Surface, nearest,
+        Surface, nearest, passes,
         scratch::{self, SEGMENT},
     },
     friction::{Friction, FrictionSpring},
@@ -63,8 +63,13 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
         e += V3::load(simd, &edges[i + 1]);
         old += V3::load(simd, &tile.state[i + 1][state::EDGE..]);
     }
-    let (at, Surface { distance, normal, carried }) =
-        nearest_edge(simd, step.colliders, (x + step.root.position, e), at);
+    let (at, Surface { distance, normal, carried }) = nearest_edge(
+        simd,
+        step.colliders,
+        (x + step.root.position, e),
+        at,
+        [i, outer].map(|i| passes(simd, tile, i)),
+    );
     store(at, &mut tile.segment_contacts[outer][segment_contact::AT]);
     let gap = distance + segment_tolerance(simd, tile, outer);
 
@@ -125,18 +130,20 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
 
 /// Returns the surface nearest to the place `at` of the segments from `a` to `a + e` (world), and that place.
 /// Where segments cross an edge of a box or a hull, the place follows the crossing. The distance there, along the
-/// normal across segment and edge, is continuous across the two faces.
+/// normal across segment and edge, is continuous across the two faces. The colliders that are `passed` are left out; they
+/// have no straight edges.
 #[inline(never)]
 fn nearest_edge<S: Simd>(
     simd: S,
     colliders: &[ColliderPose],
     (a, e): (V3<S>, V3<S>),
     at: F<S>,
+    passed: [F<S>; 2],
 ) -> (F<S>, Surface<S>) {
     simd.vectorize(
         #[inline(always)]
         || {
-            let mut surface = nearest(simd, colliders, e.mul_add(at, a));
+            let mut surface = nearest(simd, colliders, e.mul_add(at, a), passed);
             let mut at = at;
             let whole = (F::splat(simd, 0.0), F::splat(simd, f32::MAX));
             for pose in colliders {

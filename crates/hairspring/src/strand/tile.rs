@@ -262,6 +262,9 @@ tile_arrays! {
         /// Authored depth of the segment that ends at each point, 0 or less [m]; not in use if no segment was
         /// authored inside a collider.
         rest_penetration: shared Row,
+        /// Collider that each point does not touch, see [`super::contact::passes`]; not in use if every point touches
+        /// all of them.
+        passes: shared Row,
         /// Contacts of the segment that ends at each point, see `segment_contact`; not in use if segments are
         /// not tested.
         segment_contacts: unique SegmentContactRows,

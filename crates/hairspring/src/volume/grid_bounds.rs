@@ -135,6 +135,10 @@ pub fn nearest(x: f32) -> i32 {
     ((x + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
 }
 
+/// Lowest and highest coordinate of a point inside, as distances from the two ends of the bounds [cells]. Hair that the
+/// bounds were made for is at least 2 cells from either; a point nearer to the ring is one that they do not cover.
+const MARGIN: f32 = 1.5;
+
 impl Placed {
     /// Locates points, which are relative to the lowest node of the bounds [cells].
     #[inline(always)]
@@ -143,11 +147,11 @@ impl Placed {
         let (mut cell, mut inside) = ([0; LANES], [1.0; LANES]);
         let mut f = [[0.0; LANES]; 3];
         for k in 0..3 {
-            let last = (bounds.dims[k] - 2) as f32;
+            let last = (bounds.dims[k] - 1) as f32 - MARGIN;
             for lane in 0..LANES {
                 let at = points[k][lane];
                 // Comparisons that are false for a NaN.
-                let low = if at > 0.0 { at } else { 0.0 };
+                let low = if at > MARGIN { at } else { MARGIN };
                 let clamped = if low < last { low } else { last };
                 inside[lane] = if at == clamped { inside[lane] } else { 0.0 };
                 // A point on a node may be assigned to the previous cell; its weight is still entirely at

@@ -277,3 +277,16 @@ fn non_finite_points_do_not_count() {
         }
     }
 }
+
+#[test]
+fn points_stretched_beyond_their_reach_do_not_count() {
+    for method in METHODS {
+        for stretch in [1.5, 2.0, 3.0, 10.0, 1e4] {
+            let mut bundle = Bundle::new();
+            let mut volume = bundle.volume(method);
+            bundle.set(|p| (p * stretch, p * -3.0), &RigidTransform::default());
+            let push = bundle.compute_accelerations(&mut volume, &RigidTransform::default());
+            assert!(push.iter().all(|a| a.is_finite()), "{method:?}, stretched by {stretch}");
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What a user should know about a scene before it plays.
+
+use super::Stage;
+use hairspring::collide::ColliderShape;
+
+/// Thickness below which hair may pass through a hull [m]. The side on which hair was is remembered for boxes, capsules
+/// and sheets only.
+const THIN_HULL: f32 = 5e-3;
+
+impl Stage {
+    /// Returns a sentence for each thing that cannot be as the scene asks: a collision mesh that is too thin for its
+    /// distance field, thin hulls, hair that starts inside colliders, and a volume whose cells are larger than requested.
+    /// It describes the current state, so it is called before the first step.
+    pub fn notes(&self) -> Vec<String> {
+        let thin = self.thin_mesh().map(|thin| thin.to_string());
+        let inside = self.starts_inside().map(|inside| inside.to_string());
+        thin.into_iter().chain(self.thin_hull()).chain(inside).chain(self.enlarged_cells()).collect()
+    }
+
+    /// Describes the thinnest hull, if hair may pass through it.
+    fn thin_hull(&self) -> Option<String> {
+        let hulls = self.scene_colliders().iter().filter_map(|collider| match &collider.shape {
+            ColliderShape::Hull(hull) => Some(hull.thickness()),
+            _ => None,
+        });
+        let thinnest = hulls.fold(f32::INFINITY, f32::min);
+        (thinnest < THIN_HULL).then(|| {
+            format!(
+                "a hull is {:.1} mm thick, and hair may pass through hulls of less than {:.0} mm; give it as a box, or as a \
+                 [[sheet]] with a thickness",
+                1e3 * thinnest,
+                1e3 * THIN_HULL
+            )
+        })
+    }
+
+    /// Describes cells of the volume that are larger than the scene asks for.
+    fn enlarged_cells(&self) -> Option<String> {
+        let requested = self.scene.volume.cell?;
+        let report = self.volume().filter(|report| report.cell_enlarged)?;
+        Some(format!(
+            "volume.cell = {requested} would need more cells than a grid can have; cells of {:.3} m are used",
+            report.cell
+        ))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{
+        Collider, InitialContact, Scene, Shape,
+        builtin::{BuiltinOptions, scene},
+        stage::Stage,
+    };
+    use glam::Vec3;
+    use hairspring::settings::{Volume, VolumeMethod};
+
+    #[test]
+    fn thin_hulls_are_reported() {
+        let head = scene(&BuiltinOptions { strands: 100, ..BuiltinOptions::default() });
+        let notes = |thickness: f32| {
+            let corner =
+                |k: usize| Vec3::new((k & 1) as f32, (k >> 1 & 1) as f32, thickness * (k >> 2) as f32);
+            let shape = Shape::Hull { points: (0..8).map(corner).collect(), file: None, scale: None };
+            let colliders = vec![Collider { joint: None, initial: InitialContact::Keep, shape }];
+            Stage::new(Scene { colliders, ..head.clone() }).unwrap().notes()
+        };
+        assert!(notes(0.006).iter().all(|note| !note.contains("hull")));
+        let thin = notes(0.002);
+        assert!(thin.iter().any(|note| note.starts_with("a hull is 2.0 mm thick")), "{thin:?}");
+    }
+
+    #[test]
+    fn cells_that_are_larger_than_requested_are_reported() {
+        let head = scene(&BuiltinOptions { strands: 100, ..BuiltinOptions::default() });
+        let notes = |cell: f32| {
+            let volume = Volume { method: VolumeMethod::Density, cell: Some(cell), ..Volume::default() };
+            Stage::new(Scene { volume, ..head.clone() }).unwrap().notes()
+        };
+        assert!(notes(0.02).iter().all(|note| !note.contains("volume.cell")));
+        let small = notes(1e-5);
+        assert!(small.iter().any(|note| note.starts_with("volume.cell = 0.00001 would need")), "{small:?}");
+    }
+}
