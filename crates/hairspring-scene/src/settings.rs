@@ -1,4 +1,4 @@
-//! Colliders of a scene, and the choice of its guides. A field's default applies if a file omits it.
+//! Colliders of a scene. A field's default applies if a file omits it.
 
 use glam::{Mat3, Vec3};
 use hairspring::{
@@ -6,18 +6,6 @@ use hairspring::{
     settings::{Check, Validate, check, define_settings},
 };
 use std::{path::PathBuf, sync::Arc};
-
-/// Selects the simulated strands of a groom; the others follow them.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Guides {
-    /// The strands that the groom file marks as guides, or 2,000 chosen ones if it marks none. The default.
-    #[default]
-    FromGroom,
-    /// This many strands, spread over the scalp per group.
-    Count(u32),
-    /// Every strand.
-    All,
-}
 
 define_settings! {
     /// What happens to hair that is authored inside a collider.

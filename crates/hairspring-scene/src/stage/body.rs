@@ -10,6 +10,7 @@ use super::{
     thickness::ThinMesh,
 };
 use crate::{Collider, InitialContact, Scene, Shape, VertexCache};
+use glam::Vec3;
 use hairspring::{
     body::Body,
     collide::{ColliderPose, ColliderShape, MovingCollider},
@@ -368,14 +369,14 @@ impl StagedBody {
         self.initial_pushes.iter().any(|push| push.collider == k)
     }
 
-    /// Returns the current poses of the colliders in which hair may stay as deep as it is authored. The others are empty,
-    /// so that each keeps its index.
+    /// Returns the current poses of the colliders in which hair may stay as deep as it is authored. Each of the others is
+    /// a point, so that all keep their index.
     pub(super) fn keeping_poses(&self) -> Vec<ColliderPose> {
+        let point = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.0 };
         let mut poses = self.poses();
         for push in &self.initial_pushes {
-            let pose = RigidTransform::default();
-            poses[push.collider] =
-                MovingCollider::at_rest(SurfaceKind::Field(0.0).nothing(), pose).end_pose();
+            let point = MovingCollider::at_rest(point.clone(), RigidTransform::default());
+            poses[push.collider] = point.end_pose();
         }
         poses
     }

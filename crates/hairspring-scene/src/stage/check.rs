@@ -2,7 +2,10 @@
 
 use crate::{Scene, SceneError};
 use glam::Vec3;
-use hairspring::groom::{Imprecise, MAX_COORDINATE, first_imprecise};
+use hairspring::{
+    groom::{Groom, Imprecise, MAX_COORDINATE, first_imprecise},
+    settings::{OutOfRange, Validate},
+};
 
 /// Errors of a scene that cannot be played.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -21,6 +24,26 @@ pub enum StageError {
         strand: usize,
         /// Number of points that it has.
         points: usize,
+    },
+    /// A radius is not finite and above 0.
+    #[error("point {point} of groom {groom} has the radius {radius} m: run `groom::sanitize` first")]
+    Radius {
+        /// Index of the groom in the scene.
+        groom: usize,
+        /// Index of the point in the groom.
+        point: usize,
+        /// The radius [m].
+        radius: f32,
+    },
+    /// A multiplier of a strand is out of range.
+    #[error("the multipliers of strand {strand} of groom {groom}: {error}")]
+    Multiplier {
+        /// Index of the groom in the scene.
+        groom: usize,
+        /// Index of the strand.
+        strand: usize,
+        /// The multiplier.
+        error: OutOfRange,
     },
     /// The clip does not belong to the body.
     #[error(
@@ -101,6 +124,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), StageError> {
         if let Some(why) = first_imprecise(groom) {
             return Err(StageError::TooFar { groom: g, why });
         }
+        check_fibers(g, groom)?;
         in_range(&format!("a point of groom {g}"), &groom.points)?;
     }
     scene.validate()?;
@@ -121,6 +145,15 @@ pub(super) fn check(scene: &Scene) -> Result<(), StageError> {
         });
     }
     check_vertex_cache(scene)
+}
+
+/// Checks radii and multipliers, which a scene made by code may have of any value.
+fn check_fibers(g: usize, groom: &Groom) -> Result<(), StageError> {
+    if let Some(point) = groom.radii.iter().position(|radius| !(radius.is_finite() && *radius > 0.0)) {
+        return Err(StageError::Radius { groom: g, point, radius: groom.radii[point] });
+    }
+    let wrong = (0..groom.scales.len()).find_map(|s| Some((s, groom.scale(s).validate().err()?)));
+    wrong.map_or(Ok(()), |(strand, error)| Err(StageError::Multiplier { groom: g, strand, error }))
 }
 
 fn check_vertex_cache(scene: &Scene) -> Result<(), StageError> {

@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 use hairspring::{
     body::Mesh,
     collide::ColliderPose,
-    follow::{Follow, HairInterpolation, assign_guides, choose_guides, split_by},
+    follow::{Follow, HairInterpolation, assign_guides, split_by},
     groom::{Groom, GuideWeights},
     material::Material,
     math::RigidTransform,
@@ -16,13 +16,11 @@ use hairspring::{
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Number of guides if neither the groom nor the scene specifies them.
-const DEFAULT_GUIDES: usize = 2_000;
-
 pub(super) struct StagedHair {
     groom: Arc<Groom>,
     materials: Vec<Material>,
     look: HairLook,
+    guides: Guides,
     /// Simulated strands, as indices of the groom.
     strands: Vec<u32>,
     /// Index of the first of them among the simulated strands of all grooms.
@@ -74,6 +72,7 @@ impl StagedHair {
             groom,
             materials,
             look,
+            guides,
             strands,
             first,
             follow,
@@ -82,6 +81,11 @@ impl StagedHair {
             roots,
             left: false,
         }
+    }
+
+    /// Returns a note if more strands are simulated than the scene asks for.
+    pub(super) fn more_than_asked(&self) -> Option<String> {
+        self.guides.more_than_asked(&self.groom, self.strands.len())
     }
 
     /// See [`super::Stage::set_external_interpolation`].
@@ -295,25 +299,11 @@ fn stand(groom: Groom, body: &StagedBody, mesh: &Mesh) -> Groom {
 
 /// Returns the simulated strands, and the guides of the others; `None` if there are no others.
 fn roles(groom: &Groom, guides: Guides) -> (Vec<u32>, Option<Vec<GuideWeights>>) {
-    let all = || (0..groom.strand_count() as u32).collect::<Vec<_>>();
-    let simulated = match guides {
-        Guides::All => return (all(), None),
-        Guides::FromGroom if !groom.guides.is_empty() => {
-            let mut used: Vec<u32> = groom
-                .guides
-                .iter()
-                .flat_map(|g| g.guides.iter().zip(g.weights).filter(|(_, w)| *w > 0.0).map(|(g, _)| *g))
-                .collect();
-            used.sort_unstable();
-            used.dedup();
-            return (used, Some(groom.guides.clone()));
-        }
-        Guides::FromGroom => choose_guides(groom, DEFAULT_GUIDES),
-        Guides::Count(n) => choose_guides(groom, (n as usize).max(1)),
+    let simulated = guides.simulated(groom);
+    let weights = match guides {
+        Guides::FromGroom if !groom.guides.is_empty() => Some(groom.guides.clone()),
+        _ if simulated.len() == groom.strand_count() => None,
+        _ => Some(assign_guides(groom, &simulated)),
     };
-    if simulated.len() == groom.strand_count() {
-        return (simulated, None);
-    }
-    let weights = assign_guides(groom, &simulated);
-    (simulated, Some(weights))
+    (simulated, weights)
 }

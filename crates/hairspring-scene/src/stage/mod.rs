@@ -241,6 +241,9 @@ impl Stage {
 
     /// Advances the scene by `dt` [s] (above 0). For frames at a fixed rate, [`Stage::step_frame`] keeps
     /// exact time.
+    ///
+    /// # Panics
+    /// If `dt` is not above 0.
     pub fn step(&mut self, dt: f32) -> FrameReport {
         let mut report = self.advance(dt);
         report.follow = self.update_render_points();
@@ -257,6 +260,9 @@ impl Stage {
     /// Advances only the simulation by `dt` [s] (above 0). The points of [`Stage::strands`] do not change
     /// until [`Stage::update_render_points`], which saves their cost in frames that are not drawn. The
     /// results do not depend on which frames are drawn.
+    ///
+    /// # Panics
+    /// If `dt` is not above 0.
     pub fn advance(&mut self, dt: f32) -> FrameReport {
         self.advance_to(self.clock.after(f64::from(dt)), dt)
     }

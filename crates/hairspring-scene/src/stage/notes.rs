@@ -9,12 +9,14 @@ const THIN_HULL: f32 = 5e-3;
 
 impl Stage {
     /// Returns a sentence for each thing that cannot be as the scene asks: a collision mesh that is too thin for its
-    /// distance field, thin hulls, hair that starts inside colliders, and a volume whose cells are larger than requested.
+    /// distance field, thin hulls, hair that starts inside colliders, more guides than asked for, and a volume whose cells
+    /// are larger than requested.
     /// It describes the current state, so it is called before the first step.
     pub fn notes(&self) -> Vec<String> {
         let thin = self.thin_mesh().map(|thin| thin.to_string());
         let inside = self.starts_inside().map(|inside| inside.to_string());
-        thin.into_iter().chain(self.thin_hull()).chain(inside).chain(self.enlarged_cells()).collect()
+        let guides = self.hair.iter().filter_map(|hair| hair.more_than_asked());
+        guides.chain(thin).chain(self.thin_hull()).chain(inside).chain(self.enlarged_cells()).collect()
     }
 
     /// Describes the thinnest hull, if hair may pass through it.

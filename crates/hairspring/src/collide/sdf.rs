@@ -104,8 +104,11 @@ impl SignedDistanceField {
     }
 
     /// Returns the distance [m] and outward unit normal at `p` [m]. For points outside the grid, the distance
-    /// to the grid is added.
+    /// to the grid is added. An empty field is infinitely far away.
     pub fn distance_and_normal(&self, p: Vec3) -> (f32, Vec3) {
+        if self.distances.is_empty() {
+            return (f32::INFINITY, Vec3::Y);
+        }
         let (out, cell, along) = self.lattice.locate(p);
         let c00 = self.corners(self.lattice.index(cell));
         let [fx, fy, fz] = along.to_array();

@@ -63,6 +63,24 @@ impl ColliderShape {
         }
     }
 
+    /// Returns whether all numbers of the shape are finite; of a field, a hull or a sheet, whether its bounds are. A shape of
+    /// the user's own may be unbounded.
+    pub(crate) fn is_finite(&self) -> bool {
+        match self {
+            ColliderShape::Sphere { center, radius } => center.is_finite() && radius.is_finite(),
+            ColliderShape::Capsule { a, b, radius } => a.is_finite() && b.is_finite() && radius.is_finite(),
+            ColliderShape::Cuboid { center, half, axes } => {
+                center.is_finite() && half.is_finite() && axes.is_finite()
+            }
+            ColliderShape::Plane { point, normal } => point.is_finite() && normal.is_finite(),
+            ColliderShape::Field(_) | ColliderShape::Hull(_) | ColliderShape::Sheet(_) => {
+                let (center, radius) = self.bounds();
+                center.is_finite() && radius.is_finite()
+            }
+            ColliderShape::Custom(_) => true,
+        }
+    }
+
     /// Returns whether the shape is known to be convex. The deepest point of a segment is then searched for exactly.
     pub(crate) fn is_convex(&self) -> bool {
         matches!(

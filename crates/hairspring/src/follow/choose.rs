@@ -11,9 +11,9 @@ const SHAPE: f32 = 0.25;
 /// Number of nearest guides considered for each hair before shape decides.
 const CANDIDATES: usize = 8;
 
-/// Chooses `count` guides spread over the scalp. Each group gets a number in proportion to its strands, and
-/// at least one. Within a group, the strand farthest from all chosen ones is added repeatedly (farthest-point
-/// sampling; Gonzalez 1985).
+/// Chooses about `count` guides spread over the scalp. Each group gets a number in proportion to its strands,
+/// rounded, and at least one, so there are more than `count` where many groups are small. Within a group, the
+/// strand farthest from all chosen ones is added repeatedly (farthest-point sampling; Gonzalez 1985).
 ///
 /// Returns strand indices in increasing order, or all strands if there are no more than `count`.
 ///
@@ -86,8 +86,9 @@ fn farthest_points(groom: &Groom, group: Vec<u32>, count: usize) -> Vec<u32> {
 }
 
 /// Returns up to three guides for each strand, weighted by the inverse squared difference in root position
-/// and shape. The guides are of the strand's own group if that has any. A guide follows itself. `guides` must
-/// not be empty.
+/// and shape. The guides are of the strand's own group if that has any. A guide follows itself. A strand with points that
+/// are not finite, or farther from all guides than single precision can square, follows one guide. `guides` must not be
+/// empty.
 ///
 /// For an example, see [`follow`](crate::follow).
 ///
@@ -118,10 +119,11 @@ pub fn assign_guides(groom: &Groom, guides: &[u32]) -> Vec<GuideWeights> {
 fn weights(scored: &[(f32, u32)]) -> GuideWeights {
     let (first, guide) = scored[0];
     let mut out = GuideWeights { guides: [guide; 3], weights: [1.0, 0.0, 0.0] };
-    if first <= 1e-7 {
+    // From a distance that is not finite, or whose square is not, all guides are equally far: one is enough.
+    if first <= 1e-7 || !(first * first).is_finite() {
         return out;
     }
-    for (k, (d, g)) in scored.iter().take(3).enumerate() {
+    for (k, (d, g)) in scored.iter().filter(|(d, _)| d.is_finite()).take(3).enumerate() {
         out.guides[k] = *g;
         out.weights[k] = 1.0 / (d * d);
     }

@@ -143,11 +143,13 @@ impl Follow {
     /// Creates the follow hairs of `groom`.
     ///
     /// - `guides`: the simulated strands.
-    /// - `weights`: for every strand, strands of the groom that are in `guides`; shape `[strands]`.
+    /// - `weights`: for every strand, strands of the groom that are in `guides`; shape `[strands]`. Weights that do not
+    ///   sum to 1 are divided by their sum. If all three are 0, the strand follows its first guide.
     /// - `colliders`: colliders at rest. Points that start inside may stay as deep as they are.
     ///
     /// # Panics
-    /// If `guides` or `weights` name a strand that does not exist or is no guide, or `weights` is too short.
+    /// If `guides` or `weights` name a strand that does not exist or is no guide, `weights` is too short, a weight is
+    /// negative or not finite, or a guide has fewer than 2 points.
     pub fn new(
         groom: Arc<Groom>,
         guides: &[u32],
@@ -158,12 +160,16 @@ impl Follow {
         let mut guide_indices = vec![u32::MAX; groom.strand_count()];
         let mut guide_offsets = vec![0];
         for (k, s) in guides.iter().enumerate() {
+            assert!(groom.range(*s as usize).len() >= 2, "guide {s} must have at least 2 points");
             guide_indices[*s as usize] = k as u32;
             guide_offsets.push(guide_offsets[k] + groom.range(*s as usize).len() as u32);
         }
         let weights: Vec<GuideWeights> = weights
             .iter()
-            .map(|w| GuideWeights { guides: w.guides.map(|g| guide_indices[g as usize]), weights: w.weights })
+            .map(|w| GuideWeights {
+                guides: w.guides.map(|g| guide_indices[g as usize]),
+                weights: normalized(w.weights),
+            })
             .collect();
         let guide_coordinates = carry::rides(&groom, guides, &weights);
         let clearance = groom
@@ -276,6 +282,18 @@ impl Follow {
             + size_of_val(&clearance[..])
             + size_of_val(&apart[..])
             + size_of_val(&self.guide_transforms[..])
+    }
+}
+
+/// Returns weights with the sum 1. Those that have it up to rounding are unchanged.
+fn normalized(weights: [f32; 3]) -> [f32; 3] {
+    let valid = weights.iter().all(|w| w.is_finite() && *w >= 0.0);
+    assert!(valid, "weights of guides must be finite and 0 or more, not {weights:?}");
+    let sum: f32 = weights.iter().sum();
+    match sum {
+        0.0 => [1.0, 0.0, 0.0],
+        _ if (sum - 1.0).abs() < 1e-5 => weights,
+        _ => weights.map(|w| w / sum),
     }
 }
 

@@ -49,7 +49,8 @@ fn triangle_frame([a, b, c]: [Vec3; 3]) -> Quat {
 }
 
 /// Binds every root to the nearest point of `mesh`, unless the groom already has bindings. A mesh without
-/// triangles binds nothing.
+/// triangles binds nothing. A root that is not finite has no nearest point: it is bound to the first corner of the first
+/// triangle.
 ///
 /// ```
 /// use glam::Vec3;
@@ -73,20 +74,22 @@ pub fn bind_roots(groom: &mut Groom, mesh: &Mesh) {
 ///
 /// For an example, see [`bind_roots`].
 pub fn bind_roots_where(groom: &mut Groom, mesh: &Mesh, allowed: impl Fn(usize, usize) -> bool + Sync) {
-    if !groom.roots.is_empty() {
+    if !groom.roots.is_empty() || mesh.triangles.is_empty() {
         return;
     }
     let tree = NearestTree::new(mesh);
-    let roots: Option<Vec<RootBinding>> = (0..groom.strand_count())
+    let lost = RootBinding { triangle: 0, barycentric: Vec3::X, offset: Vec3::ZERO };
+    groom.roots = (0..groom.strand_count())
         .into_par_iter()
         .map(|s| {
             let root = groom.strand(s).first().copied().unwrap_or(Vec3::ZERO);
-            let place = tree.nearest(root, |t| allowed(s, t)).or_else(|| tree.nearest(root, |_| true))?;
-            let corners = mesh.corners(place.triangle as usize);
-            Some(RootBinding::new(place.triangle, place.barycentric, corners, root))
+            let place = tree.nearest(root, |t| allowed(s, t)).or_else(|| tree.nearest(root, |_| true));
+            place.map_or(lost, |place| {
+                let corners = mesh.corners(place.triangle as usize);
+                RootBinding::new(place.triangle, place.barycentric, corners, root)
+            })
         })
         .collect();
-    groom.roots = roots.unwrap_or_default();
 }
 
 #[cfg(test)]

@@ -28,6 +28,7 @@ pub use sanitize::{Repairs, sanitize};
 pub use thicken::{Thicken, thicken};
 pub use trim::{cut, keep_strands, thin};
 
+use crate::settings::{Check, Validate, check};
 use glam::{Vec2, Vec3};
 
 /// The strands of a hairstyle: the points of all strands one after the other, in meters, right-handed, Y up.
@@ -115,7 +116,27 @@ impl Default for StrandScale {
     }
 }
 
-/// Up to three guide strands (indices of strands of the same groom) and their weights, which sum to 1.
+impl Validate for StrandScale {
+    fn checks(&self) -> Vec<Check> {
+        let Self { bend, drag, damping, global_shape, friction, charge, radius, flatness, tether } = *self;
+        let factors = [
+            ("bend", bend),
+            ("drag", drag),
+            ("damping", damping),
+            ("global_shape", global_shape),
+            ("friction", friction),
+            ("charge", charge),
+            ("flatness", flatness),
+            ("tether", tether),
+        ];
+        let factors = factors.map(|(key, x)| check(x.is_finite() && x >= 0.0, key, "0 or more"));
+        let radius = check(radius.is_finite() && radius > 0.0, "radius", "above 0");
+        factors.into_iter().chain([radius]).collect()
+    }
+}
+
+/// Up to three guide strands (indices of strands of the same groom) and their weights, which sum to 1
+/// ([`Follow::new`](crate::follow::Follow::new) divides them by their sum).
 ///
 /// Unused entries have weight 0 and repeat the first guide.
 ///

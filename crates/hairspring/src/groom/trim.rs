@@ -4,7 +4,8 @@ use super::{Groom, GuideWeights};
 
 /// Cuts each strand `s` to the share `shares[s]` of its length, 0 to 1. Its points are placed anew at equal
 /// shares of the former distances, so that their number does not change; radii and colors are interpolated.
-/// Shares outside of the range are clamped to it. A strand that is cut to 0 becomes a point: see [`keep_strands`].
+/// Shares outside of the range are clamped to it. A strand that is cut to 0 becomes a point: see [`keep_strands`]. A strand
+/// of fewer than two points has no length and does not change.
 ///
 /// ```
 /// use glam::Vec3;
@@ -21,6 +22,9 @@ pub fn cut(groom: &mut Groom, shares: &[f32]) {
     assert_eq!(shares.len(), groom.strand_count(), "a share for each strand");
     for (s, share) in shares.iter().enumerate().filter(|(_, share)| **share < 1.0) {
         let range = groom.range(s);
+        if range.len() < 2 {
+            continue;
+        }
         let points = groom.points[range.clone()].to_vec();
         let mut ends = vec![0.0];
         for w in points.windows(2) {

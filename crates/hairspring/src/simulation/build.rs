@@ -143,6 +143,7 @@ impl Simulation {
             model,
             state,
             force_fields: Vec::new(),
+            forces_added: 0,
             forces: ForceBuffers::default(),
             hair_field: HairField::default(),
             volume: None,

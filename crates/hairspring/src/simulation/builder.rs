@@ -1,6 +1,6 @@
 //! Builds a simulation from a groom and its settings.
 
-use super::Simulation;
+use super::{Simulation, try_step::is_finite};
 use crate::{
     collide::ColliderPose,
     groom::Groom,
@@ -60,6 +60,25 @@ pub enum BuildError {
         /// The strand.
         strand: u32,
     },
+    /// A radius of the groom that is used is not finite and above 0.
+    #[error(
+        "strand {strand} has the radius {radius} m at a point, which must be finite and above 0; `groom::sanitize` \
+         repairs such grooms"
+    )]
+    Radius {
+        /// The strand.
+        strand: u32,
+        /// The radius [m].
+        radius: f32,
+    },
+    /// A multiplier of a strand is out of range.
+    #[error("the multipliers of strand {strand}: {error}")]
+    Scale {
+        /// The strand.
+        strand: u32,
+        /// The multiplier.
+        error: OutOfRange,
+    },
     /// An array of the groom has the wrong length.
     #[error("the groom's array `{array}` has {length} entries instead of {expected}")]
     GroomArray {
@@ -84,6 +103,9 @@ pub enum BuildError {
     /// Gravity is not finite.
     #[error("gravity must be three finite numbers [m/s²]")]
     Gravity,
+    /// The rest pose of the anchor is not finite.
+    #[error("the rest pose of the anchor must consist of finite numbers")]
+    Anchor,
 }
 
 impl Simulation {
@@ -203,6 +225,7 @@ impl<'a> SimulationBuilder<'a> {
             if !points.iter().all(|p| p.is_finite()) {
                 return Err(BuildError::NotFinite { strand });
             }
+            self.check_fiber(strand)?;
         }
         self.solver.validate().map_err(BuildError::Solver)?;
         for (index, material) in self.materials.iter().enumerate() {
@@ -211,6 +234,24 @@ impl<'a> SimulationBuilder<'a> {
         if !self.gravity.is_finite() {
             return Err(BuildError::Gravity);
         }
+        if !is_finite(&self.anchor) {
+            return Err(BuildError::Anchor);
+        }
         Ok(())
+    }
+
+    /// Checks the radii and multipliers of a strand. Radii of the groom are not used if the material has one.
+    fn check_fiber(&self, strand: u32) -> Result<(), BuildError> {
+        let (groom, s) = (&self.groom, strand as usize);
+        groom.scale(s).validate().map_err(|error| BuildError::Scale { strand, error })?;
+        let material = self.materials.get(groom.group(s) as usize).or(self.materials.last());
+        if material.is_some_and(|material| material.radius.is_some()) {
+            return Ok(());
+        }
+        let radii = &groom.radii[groom.range(s)];
+        match radii.iter().find(|radius| !(radius.is_finite() && **radius > 0.0)) {
+            Some(&radius) => Err(BuildError::Radius { strand, radius }),
+            None => Ok(()),
+        }
     }
 }

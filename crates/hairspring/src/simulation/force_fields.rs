@@ -4,7 +4,7 @@ use super::Simulation;
 use crate::forces::ForceField;
 use std::sync::Arc;
 
-/// Identifies a force field of a simulation.
+/// Identifies a force field of a simulation. The identifier of a removed force is not used again.
 ///
 /// For an example, see `examples/custom_force.rs`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -14,7 +14,8 @@ impl Simulation {
     /// Adds an external force, which acts in every step until it is removed. Forces act in the order in which
     /// they were added, after the built-in ones.
     pub fn add_force(&mut self, force: Arc<dyn ForceField>) -> ForceId {
-        let id = ForceId(self.force_fields.last().map_or(0, |(last, _)| last.0 + 1));
+        let id = ForceId(self.forces_added);
+        self.forces_added += 1;
         self.force_fields.push((id, force));
         id
     }

@@ -7,7 +7,7 @@ use crate::{
 };
 use glam::Vec3;
 
-/// A hold on one point.
+/// A hold on one point, with the integrators `backward-euler` and `bdf2`; the others ignore holds.
 ///
 /// ```
 /// use hairspring::{prelude::*, simulation::Hold};
@@ -30,7 +30,8 @@ pub struct Hold {
     /// Displacement of the target in the next frame [m]. After that, the target is at rest.
     pub displacement: Vec3,
     /// Stiffness of the spring that pulls the point to the target [N/m], above 0; `None` if the point is
-    /// pinned.
+    /// pinned. A pin must stay within the reach of the hair between the root, or another pin, and the point, and move by
+    /// less than a segment in a frame. Otherwise the strand is torn: the strain limit does not hold.
     pub stiffness: Option<f32>,
     /// Force on the point [N].
     pub force: Vec3,
@@ -40,7 +41,8 @@ pub struct Hold {
 }
 
 impl Simulation {
-    /// Holds these points from now on, and releases all others.
+    /// Holds these points from now on, and releases all others. Only the integrators `backward-euler` and `bdf2` apply
+    /// holds; the others ignore them.
     ///
     /// # Panics
     /// If a strand or a point does not exist, or the root drives the point.

@@ -8,7 +8,8 @@ use crate::{
 };
 use glam::Vec3;
 
-/// Identifies an active manipulator.
+/// Identifies an active manipulator. The identifier of a removed one is not used again by the same simulation, not even
+/// after [`Simulation::restore`].
 ///
 /// For an example, see [`forces`](crate::forces).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -19,8 +20,8 @@ pub struct ManipulatorId(u32);
 #[derive(Clone, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Manipulators {
-    /// Number of manipulators that were ever added.
-    added: u32,
+    /// Number of manipulators that were ever added. A restored snapshot does not lower it.
+    pub(super) added: u32,
     pub(super) active: Vec<ActiveManipulator>,
     /// Points of one strand, kept to reuse the memory.
     points: Vec<Vec3>,
@@ -101,7 +102,8 @@ impl Simulation {
 
     /// Takes over the manipulators of `old`, whose strand in lane `p` is in lane `lanes[p]` here.
     pub(super) fn take_over_manipulators(&mut self, old: &Self, lanes: &[u32]) {
-        self.state.manipulators.added = old.state.manipulators.added;
+        let added = &mut self.state.manipulators.added;
+        *added = old.state.manipulators.added.max(*added);
         self.state.manipulators.active.clone_from(&old.state.manipulators.active);
         for bond in self.state.manipulators.active.iter_mut().flat_map(|active| &mut active.bonds.0) {
             bond.place = lanes[bond.place as usize];

@@ -105,6 +105,8 @@ pub struct Simulation {
     state: StrandState,
     /// External forces that the caller added.
     force_fields: Vec<(ForceId, Arc<dyn ForceField>)>,
+    /// Number of external forces that were ever added.
+    forces_added: u32,
     /// External forces on points in the last frame.
     forces: ForceBuffers,
     hair_field: HairField,
@@ -200,9 +202,13 @@ impl Simulation {
     /// to charge. By default, the simulated strands represent the whole groom in equal shares.
     ///
     /// # Panics
-    /// If there is not one number for each strand of the groom.
+    /// If there is not one number for each strand of the groom, or one is not finite and above 0.
     pub fn set_hair_multiplicity(&mut self, hairs: Vec<f32>) {
         assert_eq!(hairs.len(), self.model.groom.strand_count(), "one number for each strand of the groom");
+        assert!(
+            hairs.iter().all(|n| n.is_finite() && *n > 0.0),
+            "numbers of hairs must be finite and above 0"
+        );
         Arc::make_mut(&mut self.model).multiplicity = hairs;
     }
 

@@ -20,7 +20,8 @@ use std::time::Duration;
 ///
 /// For an example, see [`simulation`](crate::simulation).
 pub struct StepInput<'a> {
-    /// Length of the frame [s], above 0.
+    /// Length of the frame [s], above 0. Below about 1e-5 s it is of no use: single precision then rounds the motion of a
+    /// substep away.
     pub dt: f32,
     /// Pose of the frame that roots move with (the head). Within the frame, roots follow the arc of its
     /// motion.
@@ -97,7 +98,9 @@ impl Simulation {
     /// The frame is divided into equal substeps. Each is at most 1/60 s over `solver.substeps` long, with a
     /// tolerance of 0.15 %. The substep length therefore does not depend on frame rates that it divides, and
     /// roots match the skin at every frame, which an accumulator with a remainder would not ensure. More
-    /// substeps are used where a body that is fast relative to its thickness passes through the hair.
+    /// substeps are used where a body that is fast relative to its thickness passes through the hair. A step has at
+    /// most 4096 substeps, so that a very long frame (17 s with 4 substeps in 1/60 s) does not stall the caller; beyond, they
+    /// are longer.
     ///
     /// State that is not finite, from input that is not, is reset and counted in the report.
     ///

@@ -1,7 +1,11 @@
 //! A step that checks its input, for engines whose input may be wrong.
 
 use super::{Simulation, StepInput, StepReport};
-use crate::math::RigidTransform;
+use crate::{
+    air::{Air, Flow, Source},
+    collide::MovingCollider,
+    math::RigidTransform,
+};
 
 /// The reason that [`Simulation::try_step`] refused its input.
 ///
@@ -29,9 +33,21 @@ pub enum StepError {
     /// A pose of this collider has a NaN or an infinite number.
     #[error("a pose of collider {0} is not finite")]
     Collider(usize),
-    /// The velocity of the directional wind has a NaN or an infinite number.
-    #[error("the velocity of the wind is not finite")]
+    /// The shape of this collider has a NaN or an infinite number.
+    #[error("the shape of collider {0} is not finite")]
+    Shape(usize),
+    /// The directional wind has a NaN or an infinite number.
+    #[error("the velocity, `gust` or `gust_rate` of the wind is not finite")]
     Wind,
+    /// The time at the start of the frame is NaN or infinite [s].
+    #[error("the time of the air must be finite [s], not {0}")]
+    Time(f64),
+    /// This wind source has a NaN or an infinite number.
+    #[error("wind source {0} is not finite")]
+    Source(usize),
+    /// The strength or the size of the turbulence is NaN or infinite.
+    #[error("the `strength` or `size` of the turbulence is not finite")]
+    Turbulence,
 }
 
 impl Simulation {
@@ -59,19 +75,55 @@ impl Simulation {
         if !(input.dt.is_finite() && input.dt > 0.0) {
             return Err(StepError::Dt(input.dt));
         }
-        let broken = |pose: &RigidTransform| !(pose.translation.is_finite() && pose.rotation.is_finite());
-        if broken(&input.anchor) {
+        if !is_finite(&input.anchor) {
             return Err(StepError::Anchor);
         }
-        if let Some(root) = input.roots.iter().position(broken) {
+        if let Some(root) = input.roots.iter().position(|pose| !is_finite(pose)) {
             return Err(StepError::Root(root));
         }
-        if let Some(collider) = input.colliders.iter().position(|o| broken(&o.start) || broken(&o.end)) {
+        let unplaced = |o: &MovingCollider| !(is_finite(&o.start) && is_finite(&o.end));
+        if let Some(collider) = input.colliders.iter().position(unplaced) {
             return Err(StepError::Collider(collider));
         }
-        if !input.air.wind.velocity.is_finite() {
-            return Err(StepError::Wind);
+        if let Some(collider) = input.colliders.iter().position(|o| !o.shape.is_finite()) {
+            return Err(StepError::Shape(collider));
         }
+        check_air(&input.air)?;
         Ok(self.step(input))
     }
+}
+
+fn check_air(air: &Air) -> Result<(), StepError> {
+    let Air { wind, time, sources, turbulence } = air;
+    if !(wind.velocity.is_finite() && wind.gust.is_finite() && wind.gust_rate.is_finite()) {
+        return Err(StepError::Wind);
+    }
+    if !time.is_finite() {
+        return Err(StepError::Time(*time));
+    }
+    if let Some(source) = sources.iter().position(|source| !is_finite_source(source)) {
+        return Err(StepError::Source(source));
+    }
+    if !(turbulence.strength.is_finite() && turbulence.size.is_finite()) {
+        return Err(StepError::Turbulence);
+    }
+    Ok(())
+}
+
+/// Returns whether all numbers of a pose are finite.
+pub(super) fn is_finite(pose: &RigidTransform) -> bool {
+    pose.translation.is_finite() && pose.rotation.is_finite()
+}
+
+/// Returns whether all numbers of a wind source are finite.
+fn is_finite_source(source: &Source) -> bool {
+    let (vectors, numbers) = match source.flow {
+        Flow::Point { center, radius, speed } => ([center, center], [radius, speed, 0.0]),
+        Flow::Vortex { center, axis, radius, speed } => ([center, axis], [radius, speed, 0.0]),
+        Flow::Fan { center, axis, radius, speed, spread } => ([center, axis], [radius, speed, spread]),
+    };
+    is_finite(&source.pose)
+        && source.factor.is_finite()
+        && vectors.iter().all(|v| v.is_finite())
+        && numbers.iter().all(|x| x.is_finite())
 }

@@ -34,6 +34,9 @@ impl Simulation {
     ) -> Result<bool, OutOfRange> {
         materials.iter().try_for_each(Material::validate)?;
         solver.validate()?;
+        if !gravity.is_finite() {
+            return Err(OutOfRange { key: "gravity".into(), expected: "three finite numbers [m/s²]" });
+        }
         let default = [Material::default()];
         let materials = if materials.is_empty() { &default[..] } else { materials };
         let old = &self.model;

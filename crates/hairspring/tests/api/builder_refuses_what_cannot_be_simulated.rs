@@ -4,8 +4,9 @@
 use crate::support::groom;
 use glam::Vec3;
 use hairspring::{
-    groom::Groom,
+    groom::{Groom, StrandScale},
     material::Material,
+    math::RigidTransform,
     settings::Solver,
     simulation::{BuildError, Simulation},
 };
@@ -33,6 +34,38 @@ fn invalid_grooms_are_refused() {
 }
 
 #[test]
+fn fibers_without_a_valid_thickness_or_multiplier_are_refused() {
+    for radius in [0.0, -1e-5, f32::NAN, f32::INFINITY] {
+        let mut broken = groom(3);
+        broken.radii[20] = radius;
+        let error = Simulation::builder(broken.clone()).build().err();
+        assert!(matches!(error, Some(BuildError::Radius { strand: 1, .. })), "{radius}: {error:?}");
+        // The radius of a material replaces those of the groom.
+        let material = Material { radius: Some(40e-6), ..Material::default() };
+        assert!(Simulation::builder(broken).materials(&[material]).build().is_ok(), "{radius}");
+    }
+    for value in [-1.0, f32::NAN, f32::INFINITY] {
+        let one = StrandScale::default();
+        for (scale, key) in [
+            (StrandScale { bend: value, ..one }, "bend"),
+            (StrandScale { drag: value, ..one }, "drag"),
+            (StrandScale { damping: value, ..one }, "damping"),
+            (StrandScale { global_shape: value, ..one }, "global_shape"),
+            (StrandScale { friction: value, ..one }, "friction"),
+            (StrandScale { charge: value, ..one }, "charge"),
+            (StrandScale { radius: value, ..one }, "radius"),
+            (StrandScale { flatness: value, ..one }, "flatness"),
+            (StrandScale { tether: value, ..one }, "tether"),
+        ] {
+            let broken = Groom { scales: vec![one, one, scale], ..groom(3) };
+            let error = Simulation::builder(broken).build().err().unwrap();
+            let BuildError::Scale { strand, error } = error else { panic!("{key}: {error}") };
+            assert_eq!((strand, &*error.key), (2, key), "{value}");
+        }
+    }
+}
+
+#[test]
 fn invalid_settings_are_refused() {
     let solver = Solver { substeps: 0, ..Solver::default() };
     let error = Simulation::builder(groom(3)).solver(solver).build().err().unwrap();
@@ -42,4 +75,7 @@ fn invalid_settings_are_refused() {
     assert_eq!(error.to_string(), "material 1: `young` must be above 0 [Pa]");
     let error = Simulation::builder(groom(3)).gravity(Vec3::NAN).build().err().unwrap();
     assert_eq!(error, BuildError::Gravity);
+    let anchor = RigidTransform { translation: Vec3::NAN, ..RigidTransform::default() };
+    let error = Simulation::builder(groom(3)).anchor(anchor).build().err().unwrap();
+    assert_eq!(error, BuildError::Anchor);
 }

@@ -5,14 +5,18 @@ use crate::support::{groom, simulation};
 use glam::{Quat, Vec3};
 use hairspring::{
     air::{Air, Flow, Source, Turbulence, WindOcclusion},
+    body::Mesh,
     collide::{ColliderShape, MovingCollider},
+    follow::{Follow, assign_guides},
     forces::{Manipulator, comb::Comb, grab::Grab, tie::Tie},
+    groom::{Groom, GuideWeights, bind_roots, cut},
     material::Material,
     math::RigidTransform,
-    settings::{Neighbours, OutOfRange, Solver, Volume, VolumeMethod, Wind},
+    settings::{Effects, Neighbours, OutOfRange, Solver, Volume, VolumeMethod, Wind},
     simulation::{DebugRenderMode, Simulation, StepError, StepInput},
 };
 use hairspring_test::{FRAME, points};
+use std::sync::Arc;
 
 const BAD: [f32; 6] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -1.0, 0.0, 1e30];
 
@@ -49,8 +53,127 @@ fn a_step_names_its_broken_input() {
     ] {
         assert_eq!(hair.try_step(&input), Err(error));
     }
+    for shape in broken_shapes() {
+        let colliders =
+            [colliders[0].clone(), MovingCollider::at_rest(shape.clone(), RigidTransform::default())];
+        let input = StepInput { colliders: &colliders, ..input };
+        assert_eq!(hair.try_step(&input), Err(StepError::Shape(1)), "{shape:?}");
+    }
+    for (broken, error) in broken_air() {
+        let input = StepInput { air: broken, ..input };
+        assert_eq!(hair.try_step(&input), Err(error));
+    }
+    for source in broken_sources() {
+        let sources = [source];
+        let input = StepInput { air: Air { sources: &sources, ..air }, ..input };
+        assert_eq!(hair.try_step(&input), Err(StepError::Source(0)), "{source:?}");
+    }
     assert_eq!(points(&hair), before);
     assert_eq!(hair.try_step(&input).map(|report| report.reset_strands), Ok(0));
+}
+
+/// Shapes with one number that is not finite.
+fn broken_shapes() -> Vec<ColliderShape> {
+    let (zero, bad, axes) = (Vec3::ZERO, Vec3::X * f32::NAN, glam::Mat3::IDENTITY);
+    vec![
+        ColliderShape::Sphere { center: bad, radius: 0.01 },
+        ColliderShape::Sphere { center: zero, radius: f32::NAN },
+        ColliderShape::Capsule { a: zero, b: bad, radius: 0.01 },
+        ColliderShape::Capsule { a: zero, b: Vec3::X, radius: f32::INFINITY },
+        ColliderShape::Cuboid { center: zero, half: bad, axes },
+        ColliderShape::Plane { point: zero, normal: bad },
+    ]
+}
+
+/// Moving air with one number that is not finite. Times are infinite, because NaN does not equal itself.
+fn broken_air() -> Vec<(Air<'static>, StepError)> {
+    let (wind, turbulence) = (Wind::default(), Turbulence::default());
+    let with = |wind| Air { wind, ..Air::default() };
+    let stirred = |turbulence| Air { turbulence, ..Air::default() };
+    vec![
+        (with(Wind { gust: f32::NAN, ..wind }), StepError::Wind),
+        (with(Wind { gust_rate: f32::INFINITY, ..wind }), StepError::Wind),
+        (Air { time: f64::INFINITY, ..Air::default() }, StepError::Time(f64::INFINITY)),
+        (stirred(Turbulence { strength: f32::NAN, ..turbulence }), StepError::Turbulence),
+        (stirred(Turbulence { size: f32::NAN, ..turbulence }), StepError::Turbulence),
+    ]
+}
+
+/// Wind sources with one number that is not finite.
+fn broken_sources() -> Vec<Source> {
+    let (center, axis, bad) = (Vec3::ZERO, Vec3::X, Vec3::X * f32::NAN);
+    let pose = RigidTransform::default();
+    let of = |flow| Source { flow, pose, factor: 1.0 };
+    let flow = Flow::Point { center, radius: 0.1, speed: 1.0 };
+    vec![
+        of(Flow::Point { center: bad, radius: 0.1, speed: 1.0 }),
+        of(Flow::Vortex { center, axis: bad, radius: 0.1, speed: 1.0 }),
+        of(Flow::Fan { center, axis, radius: 0.1, speed: 1.0, spread: f32::NAN }),
+        of(Flow::Point { center, radius: 0.1, speed: f32::INFINITY }),
+        Source { flow, pose: broken(), factor: 1.0 },
+        Source { flow, pose, factor: f32::NAN },
+    ]
+}
+
+#[test]
+fn numbers_of_hairs_must_be_above_0() {
+    for wrong in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+        let set = || hair().0.set_hair_multiplicity(vec![3.0, wrong]);
+        assert!(std::panic::catch_unwind(set).is_err(), "{wrong}");
+    }
+    hair().0.set_hair_multiplicity(vec![3.0, 0.5]);
+}
+
+#[test]
+fn one_broken_root_leaves_the_other_strands_bound_and_all_with_guides() {
+    for value in [f32::NAN, f32::INFINITY, 1e38] {
+        let mut broken = groom(6);
+        broken.points[16] = Vec3::splat(value);
+        for weights in assign_guides(&broken, &[0, 3, 5]) {
+            assert!((weights.weights.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{value}: {weights:?}");
+        }
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Z];
+        let mesh = Mesh { positions, triangles: vec![[0, 2, 1]], ..Mesh::default() };
+        bind_roots(&mut broken, &mesh);
+        let mut whole = groom(6);
+        bind_roots(&mut whole, &mesh);
+        let bound = broken.roots[1];
+        assert!(bound.barycentric.is_finite() && bound.offset.is_finite(), "{value}: {bound:?}");
+        for s in [0, 2, 3, 4, 5] {
+            assert_eq!(broken.roots[s], whole.roots[s], "{value}");
+        }
+    }
+}
+
+#[test]
+fn strands_without_a_length_are_not_cut() {
+    let mut short = Groom::from_strands([&[][..], &[Vec3::X], &[Vec3::ZERO, Vec3::Y]], 40e-6);
+    cut(&mut short, &[0.5; 3]);
+    assert_eq!(short.points, [Vec3::X, Vec3::ZERO, Vec3::Y * 0.5]);
+}
+
+#[test]
+fn weights_of_guides_are_normalized_or_refused() {
+    let rest = Arc::new(groom(2));
+    let place = |weights| {
+        let weights = [GuideWeights { guides: [0; 3], weights }; 2];
+        let mut follow = Follow::new(rest.clone(), &[0], &weights, Effects::default(), &[]);
+        follow.update_guide_transforms(rest.strand(0), &[Quat::IDENTITY]);
+        let mut points = vec![Vec3::ZERO; 32];
+        follow.interpolation(rest.strand(0), &[]).place(&mut points);
+        points
+    };
+    for weights in [[1.0, 0.0, 0.0], [2.0, 1.0, 1.0], [0.0; 3]] {
+        let far = place(weights).iter().zip(&rest.points).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(far < 1e-5, "{weights:?}: {far} m");
+    }
+    for weights in [[f32::NAN, 0.0, 0.0], [2.0, -1.0, 0.0], [f32::INFINITY; 3]] {
+        assert!(std::panic::catch_unwind(|| place(weights)).is_err(), "{weights:?}");
+    }
+    let point = Arc::new(Groom::from_strands([[Vec3::ZERO]], 40e-6));
+    let one = [GuideWeights { guides: [0; 3], weights: [1.0, 0.0, 0.0] }];
+    let of_a_point = || Follow::new(point.clone(), &[0], &one, Effects::default(), &[]);
+    assert!(std::panic::catch_unwind(of_a_point).is_err());
 }
 
 #[test]

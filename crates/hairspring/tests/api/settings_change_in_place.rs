@@ -108,5 +108,10 @@ fn other_changes_are_refused_without_effect() {
     let wrong = Material { friction: f32::NAN, ..base() };
     let error = simulation.update_settings(&[wrong], Solver::default(), gravity).unwrap_err();
     assert_eq!(error.key, "friction");
+    let falling = Solver { sag_free: false, ..Solver::default() };
+    for solver in [Solver::default(), falling] {
+        let error = simulation.update_settings(&[base()], solver, Vec3::NAN).unwrap_err();
+        assert_eq!(error.to_string(), "`gravity` must be three finite numbers [m/s²]");
+    }
     assert_eq!(later(&mut simulation), unchanged, "an invalid value");
 }

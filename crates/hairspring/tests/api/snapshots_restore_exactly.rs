@@ -6,12 +6,14 @@ use crate::support::{groom, shake, simulation, velocities};
 use glam::Vec3;
 use hairspring::{
     collide::{ColliderShape, MovingCollider},
-    forces::{Manipulator, grab::Grab},
+    forces::{ForceField, Manipulator, StrandView, grab::Grab},
+    groom::Groom,
     material::{Material, Model},
     settings::{Integrator, Neighbours, Solver, Volume, VolumeMethod},
     simulation::{Simulation, SnapshotMismatch},
 };
 use hairspring_test::{REST, points};
+use std::sync::Arc;
 
 fn ball() -> [MovingCollider; 1] {
     let shape = ColliderShape::Sphere { center: Vec3::new(0.03, -0.06, 0.04), radius: 0.03 };
@@ -67,6 +69,52 @@ fn with_a_manipulator() {
     assert_repeats("a grab", hair);
 }
 
+/// The groom of ten strands, the last of which ends a point early.
+fn shorter() -> Groom {
+    let mut groom = groom(10);
+    groom.points.pop();
+    groom.radii.pop();
+    groom.offsets[10] -= 1;
+    groom
+}
+
+/// A force field without force.
+struct Calm;
+
+impl ForceField for Calm {
+    fn apply(&self, _: &mut StrandView) {}
+}
+
+#[test]
+fn handles_are_not_used_again() {
+    let mut hair = simulation(10, Material::default(), Solver::default());
+    let before = hair.snapshot();
+    let grab = Grab { center: Vec3::ZERO, radius: 0.05, pull: 60.0, damping: 1.0 };
+    let first = hair.add_manipulator(Manipulator::Grab(grab), REST);
+    hair.restore(&before).unwrap();
+    let second = hair.add_manipulator(Manipulator::Grab(grab), REST);
+    assert_ne!(first, second);
+    hair.remove_manipulator(first);
+    assert!(hair.attached_points(second).next().is_some());
+    let first = hair.add_force(Arc::new(Calm));
+    hair.remove_force(first);
+    let second = hair.add_force(Arc::new(Calm));
+    assert!(hair.remove_force(first).is_none() && hair.remove_force(second).is_some());
+    let mut next = simulation(10, Material::default(), Solver::default());
+    next.take_over(&hair);
+    let third = next.add_force(Arc::new(Calm));
+    assert!(third != first && third != second);
+}
+
+#[test]
+#[should_panic(
+    expected = "both must have the same strands in the same order, with the same numbers of points"
+)]
+fn strands_with_other_numbers_of_points_are_not_taken_over() {
+    let old = Simulation::builder(shorter()).build().unwrap();
+    simulation(10, Material::default(), Solver::default()).take_over(&old);
+}
+
 #[test]
 fn a_snapshot_of_other_hair_is_refused() {
     let mut hair = simulation(10, Material::default(), Solver::default());
@@ -75,6 +123,12 @@ fn a_snapshot_of_other_hair_is_refused() {
         simulation(20, Material::default(), Solver::default()),
         simulation(10, Material { model: Model::Springs, ..Material::default() }, Solver::default()),
         simulation(10, Material::default(), Solver { integrator: Integrator::Bdf2, ..Solver::default() }),
+        // Arrays of the same lengths: other strands, other numbers of points, another model, another integrator.
+        Simulation::builder(groom(20)).strands(&[0, 1, 2, 3, 4, 5, 6, 7, 8, 19]).build().unwrap(),
+        Simulation::builder(shorter()).build().unwrap(),
+        simulation(10, Material { model: Model::Curvature, ..Material::default() }, Solver::default()),
+        simulation(10, Material::default(), Solver { integrator: Integrator::Verlet, ..Solver::default() }),
+        simulation(10, Material::default(), Solver { segment_contacts: false, ..Solver::default() }),
     ];
     for other in others {
         assert_eq!(hair.restore(&other.snapshot()), Err(SnapshotMismatch));
