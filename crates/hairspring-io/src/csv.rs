@@ -17,7 +17,7 @@ use crate::{
     Place, Problem,
     strand_attributes::{GROUP, NUMBERS, StrandAttributes},
     strands::Read,
-    text::{as_text, name},
+    text::{as_text, decimal_comma, name},
     units::FileUnits,
 };
 use glam::Vec3;
@@ -78,14 +78,18 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
             continue;
         }
         if cells.len() != columns.count {
-            let text =
-                format!("the line has {} columns, and the first line names {}", cells.len(), columns.count);
-            return Err(wrong(text));
+            let hint = if cells.len() > columns.count { "; write numbers with decimal points" } else { "" };
+            return Err(wrong(format!(
+                "the line has {} columns, and the first line names {}{hint}",
+                cells.len(),
+                columns.count
+            )));
         }
         let cell = |k: usize| {
             let number = cells[k].parse::<f32>().ok();
             number.ok_or_else(|| {
-                wrong(format!("expected a number in column {}, but found {:?}", k + 1, cells[k]))
+                let hint = decimal_comma(cells[k]);
+                wrong(format!("expected a number in column {}, but found {:?}{hint}", k + 1, cells[k]))
             })
         };
         let vector = |k: [usize; 3]| Ok::<_, Problem>(Vec3::new(cell(k[0])?, cell(k[1])?, cell(k[2])?));
@@ -113,7 +117,10 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
                 }
                 attributes.numbers[*attribute].push(value);
             }
-            attributes.groups.extend(columns.group.map(|k| name(cells[k])));
+            if let Some(k) = columns.group {
+                let group = attributes.groups.index(&name(cells[k]));
+                attributes.groups.of_strands.push(group);
+            }
         }
         if last.as_deref() != Some(strand) {
             last = Some(strand.to_owned());
@@ -131,7 +138,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     }
     let radii = columns.radius.map(|_| radii);
     let mut read = Read { groom, radii, true_radii: false, units: FileUnits::default(), notes };
-    attributes.apply(&mut read);
+    attributes.apply(&mut read)?;
     Ok(read)
 }
 
@@ -234,8 +241,9 @@ mod tests {
         );
         assert_eq!(
             (groom.group_names.as_slice(), read.notes.len()),
-            (&["top".to_owned(), "side".into()][..], 0)
+            (&["top".to_owned(), "side".into()][..], 1)
         );
+        assert_eq!(read.notes, ["density keeps 2 of 3 strands"]);
         assert_eq!([0, 1].map(|s| (groom.scale(s).bend, groom.scale(s).friction)), [(2.0, 0.5), (3.0, 1.0)]);
         assert_eq!(groom.root_uvs, [glam::Vec2::new(0.25, 0.75), glam::Vec2::splat(0.5)]);
         assert_eq!(groom.guides.iter().map(|g| g.guides[0]).collect::<Vec<_>>(), [0, 0]);
@@ -266,6 +274,12 @@ mod tests {
         assert!(error("strand,x,y,z\n0,1,2\n").contains("3 columns"));
         assert!(error("strand,x,y,z\n0,1,2,a\n").contains("column 4"));
         assert!(error("").contains("empty"));
+        let comma = error("strand;x;y;z\n0;1,5;2;3\n");
+        assert!(comma.contains("line 2") && comma.ends_with("found \"1,5\"; use decimal points"), "{comma}");
+        let split = error("strand,x,y,z\n0,0,000,0,100,0,000\n");
+        assert!(split.contains("has 7 columns") && split.ends_with("decimal points"), "{split}");
+        let none = error("strand,x,y,z,density\n0,1,2,3,0\n0,1,2,4,0\n1,1,2,3,0\n");
+        assert_eq!(none, "density keeps none of the 2 strands; raise it above 0");
         assert!(
             error("strand,x,y,z,drag\n0,1,2,3,-1\n").contains("line 2: `drag` is -1; it must be 0 or more")
         );

@@ -1,7 +1,8 @@
 //! Formats that a host program reads and writes: USD and Alembic, by the Python package.
 
 use crate::{
-    Axis, Character, Error, Format, Problem, ReadOptions, Result, load, strands::Read, units::FileUnits,
+    Axis, Character, Error, Format, Problem, ReadOptions, Result, load, motion::check_positions,
+    strands::Read, units::FileUnits,
 };
 use hairspring::{groom::Groom, material::Material};
 use std::{
@@ -165,7 +166,17 @@ pub(crate) fn read_groom(path: &Path, options: &ReadOptions) -> Result<Read> {
 /// Reads a body, with its unit still to be guessed if it is not known.
 pub(crate) fn read_body(path: &Path, options: &ReadOptions) -> Result<(Character, FileUnits, Vec<String>)> {
     let ExternalFile { value, unit_known, notes } = read(path, |formats| formats.read_body(path, options))?;
+    checked(&value).map_err(|problem| problem.in_file(path))?;
     Ok((value, units(unit_known), notes))
+}
+
+/// Checks that all positions of a body are finite.
+fn checked(character: &Character) -> std::result::Result<(), Problem> {
+    if let Some(vertex) = character.body.mesh.positions.iter().position(|p| !p.is_finite()) {
+        let text = format!("vertex {vertex} is not finite; correct the mesh and export it again");
+        return Err(Problem::whole(text));
+    }
+    character.vertex_cache.as_ref().map_or(Ok(()), |cache| check_positions(&cache.frames))
 }
 
 /// External readers apply the options that are given, and turn the content to Y up.
@@ -197,5 +208,30 @@ pub fn write_cache(path: &Path, description: &CacheDescription) -> Result<Box<dy
                 .map_err(|reason| Error::Unwritable { path: path.to_owned(), reason })
         }
         _ => with_formats(path, |formats| formats.write_cache(path, description)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+    use hairspring::body::{Body, Mesh};
+    use hairspring_scene::VertexCache;
+
+    #[test]
+    fn positions_that_are_not_finite_are_refused() {
+        let body = |position: Vec3, frames: Option<Vec<Vec<Vec3>>>| Character {
+            body: Body::rigid(Mesh { positions: vec![Vec3::ZERO, position], ..Mesh::default() }),
+            vertex_cache: frames.map(|frames| VertexCache { rate: 24.0, frames }),
+            ..Character::default()
+        };
+        let error = |body| checked(&body).unwrap_err().text;
+        let good = vec![Vec3::ZERO, Vec3::X];
+        assert_eq!(checked(&body(Vec3::X, None)), Ok(()));
+        assert_eq!(checked(&body(Vec3::X, Some(vec![good.clone()]))), Ok(()));
+        assert!(error(body(Vec3::NAN, None)).starts_with("vertex 1 is not finite"));
+        let broken = vec![good, vec![Vec3::INFINITY, Vec3::X]];
+        assert!(error(body(Vec3::X, Some(broken))).starts_with("vertex 0 of sample 1 is not finite"));
+        assert!(error(body(Vec3::X, Some(vec![]))).starts_with("the file has no samples"));
     }
 }

@@ -1,6 +1,10 @@
 //! Writes the hair of a scene, frame by frame, as groom files.
 
-use crate::{Error, Strands, write_strands};
+use crate::{
+    Error, Format, Strands,
+    save::{format_for, holds_colors, holds_root_uvs},
+    write_strands,
+};
 use glam::{Vec2, Vec3};
 use std::path::Path;
 
@@ -36,9 +40,17 @@ pub enum FrameError {
 }
 
 impl FrameWriter {
-    /// Collects what is the same in every frame; the points of `grooms` are ignored. Returns the writer, and
-    /// what it leaves out, one sentence each.
-    pub fn new<'a>(grooms: impl Iterator<Item = Strands<'a>>) -> (Self, Vec<String>) {
+    /// Collects what is the same in every frame of files such as `path`; the points of `grooms` are ignored. Returns
+    /// the writer, and what it leaves out although the format could hold it, one sentence each.
+    ///
+    /// # Errors
+    /// Returns an error for an extension that is not that of a groom, or for strands that the format cannot hold.
+    pub fn new<'a>(
+        path: &Path,
+        grooms: impl Iterator<Item = Strands<'a>>,
+    ) -> Result<(Self, Vec<String>), FrameError> {
+        let format = Format::of(path);
+        let [has_colors, has_uvs] = [holds_colors, holds_root_uvs].map(|holds| format.is_some_and(holds));
         let grooms: Vec<Strands<'a>> = grooms.collect();
         let mut offsets = vec![0];
         for groom in &grooms {
@@ -48,10 +60,10 @@ impl FrameWriter {
         // A file has a color at every point or none at all; the same holds for texture coordinates.
         let colored = grooms.iter().filter(|g| !g.colors.is_empty()).count();
         let mapped = grooms.iter().filter(|g| !g.root_uvs.is_empty()).count();
-        let parts = [(colored, "colors"), (mapped, "texture coordinates")];
-        let some = parts.into_iter().filter(|(some, _)| *some > 0 && *some < grooms.len());
-        let notes =
-            some.map(|(some, what)| format!("only {some} of {} grooms have {what}; left out", grooms.len()));
+        let parts = [(has_colors, colored, "colors"), (has_uvs, mapped, "texture coordinates")];
+        let some = parts.into_iter().filter(|(has, some, _)| *has && *some > 0 && *some < grooms.len());
+        let notes = some
+            .map(|(_, some, what)| format!("only {some} of {} grooms have {what}; left out", grooms.len()));
         let writer = Self {
             points: Vec::new(),
             offsets,
@@ -65,7 +77,20 @@ impl FrameWriter {
                 false => Vec::new(),
             },
         };
-        (writer, notes.collect())
+        let notes = notes.collect();
+        format_for(path, &writer.strands())?;
+        Ok((writer, notes))
+    }
+
+    /// The strands with the points of the current frame.
+    fn strands(&self) -> Strands<'_> {
+        Strands {
+            points: &self.points,
+            offsets: &self.offsets,
+            radii: &self.radii,
+            colors: &self.colors,
+            root_uvs: &self.root_uvs,
+        }
     }
 
     /// Writes a frame: the points of all grooms [m] at `time` [s].
@@ -84,14 +109,7 @@ impl FrameWriter {
             let strand = self.offsets.partition_point(|first| *first as usize <= point) - 1;
             return Err(FrameError::NotFinite { strand, time, path: path.display().to_string() });
         }
-        let strands = Strands {
-            points: &self.points,
-            offsets: &self.offsets,
-            radii: &self.radii,
-            colors: &self.colors,
-            root_uvs: &self.root_uvs,
-        };
-        write_strands(path, strands)?;
+        write_strands(path, self.strands())?;
         Ok(())
     }
 }

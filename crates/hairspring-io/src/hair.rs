@@ -31,11 +31,41 @@ struct Header {
     flags: u32,
     /// Number of segments of every strand if there is no array of them.
     segments: u32,
-    /// Diameter.
+    /// Diameter of all points if there is no array of them.
     thickness: f32,
+    /// Transparency of all points if there is no array of them.
     transparency: f32,
+    /// Linear RGB of all points if there is no array of them.
     color: [f32; 3],
     info: [u8; 88],
+}
+
+impl Header {
+    /// Says what happens to the defaults of a file of another program. Those that are 0 are not set.
+    fn notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let mut note = |array: u32, name: &str, values: &[f32], use_of_it: &str| {
+            if self.flags & array != 0 || values.iter().all(|x| *x == 0.0) {
+                return;
+            }
+            let listed: Vec<String> = values.iter().map(f32::to_string).collect();
+            let what_happens = if values.iter().all(|x| x.is_finite() && *x >= 0.0) {
+                use_of_it
+            } else {
+                "is not used, because it must be finite and not below 0"
+            };
+            notes.push(format!("the header's default {name} of {} {what_happens}", listed.join(", ")));
+        };
+        note(HAS_THICKNESS, "thickness", &[self.thickness], "is that of all points, in the file's unit");
+        note(
+            HAS_TRANSPARENCY,
+            "transparency",
+            &[self.transparency],
+            "is not used; it follows from the fiber's width",
+        );
+        note(HAS_COLORS, "color", &self.color, "is not used; set the color in [groom.look]");
+        notes
+    }
 }
 
 /// Reads a `.hair` file, in its own units.
@@ -43,10 +73,11 @@ struct Header {
 /// # Errors
 /// Returns an error for a wrong magic, counts that disagree, or a truncated file.
 pub fn parse(data: &[u8]) -> Result<Groom, Problem> {
-    read(data).map(Read::in_file_units)
+    read(data, None).map(Read::in_file_units)
 }
 
-pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
+/// Like [`parse`], with what the file says about its units. `up` is the axis that the caller knows to point up.
+pub(crate) fn read(data: &[u8], up: Option<Axis>) -> Result<Read, Problem> {
     let mut bytes = Bytes::new(data);
     let header: Header = bytes.value("the header")?;
     if &header.magic != b"HAIR" {
@@ -99,17 +130,23 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
             bytes.remaining()
         ));
     }
-    // Thickness is a diameter. The header's default is a line width for display, not a measurement, so it is
-    // not used.
+    // Thickness is a diameter. In most files it is a line width for display, which `Read::finish` finds by its size.
     let radii = match thickness {
         Some(diameters) => Some(diameters.iter().map(|d| d * 0.5).collect()),
-        None if ours => Some(vec![header.thickness * 0.5; points]),
+        None if ours || header.thickness.is_finite() && header.thickness > 0.0 => {
+            Some(vec![header.thickness * 0.5; points])
+        }
         None => None,
     };
+    if !ours {
+        notes.extend(header.notes());
+    }
     let units = if ours {
         FileUnits { scale: Some(1.0), up: Some(Axis::Y) }
     } else {
-        notes.push("read as Z up, the convention of .hair models; set `up` to change it".into());
+        if up.is_none() {
+            notes.push("read as Z up, the convention of .hair models; set `up` to change it".into());
+        }
         FileUnits { scale: None, up: Some(Axis::Z) }
     };
     Ok(Read { groom, radii, true_radii: ours, units, notes })
@@ -151,4 +188,71 @@ pub(crate) fn write(out: &mut dyn Write, strands: &Strands<'_>) -> io::Result<()
         out.write_all(cast_slice(&diameters))?;
     }
     out.write_all(cast_slice(strands.colors))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ReadOptions;
+
+    /// A file of one strand of three points, without arrays of other values.
+    fn file(thickness: f32, transparency: f32, color: [f32; 3]) -> Vec<u8> {
+        let header = Header {
+            magic: *b"HAIR",
+            strands: 1,
+            points: 3,
+            flags: HAS_POINTS,
+            segments: 2,
+            thickness,
+            transparency,
+            color,
+            info: [0; 88],
+        };
+        let points = [Vec3::ZERO, Vec3::Z * 0.1, Vec3::Z * 0.2];
+        [bytes_of(&header), cast_slice(&points)].concat()
+    }
+
+    /// Radii [m] and notes, for a unit of a meter.
+    fn finished(file: &[u8]) -> (Vec<f32>, Vec<String>) {
+        let options = ReadOptions { scale: Some(1.0), up: Some(Axis::Y) };
+        let (groom, _, notes) = read(file, options.up).unwrap().finish(&options, None);
+        (groom.radii, notes)
+    }
+
+    #[test]
+    fn the_axis_is_noted_unless_it_is_given() {
+        let file = file(0.0, 0.0, [0.0; 3]);
+        let notes = |up| read(&file, up).unwrap().notes;
+        assert_eq!(notes(None), ["read as Z up, the convention of .hair models; set `up` to change it"]);
+        assert_eq!(notes(Some(Axis::Y)), Vec::<String>::new());
+    }
+
+    #[test]
+    fn defaults_of_the_header_are_used_or_reported() {
+        assert_eq!(finished(&file(0.0, 0.0, [0.0; 3])), (vec![DEFAULT_RADIUS; 3], vec![]));
+        let (radii, notes) = finished(&file(0.0001, 0.25, [1.0, 0.5, 0.25]));
+        assert_eq!(radii, [0.00005; 3]);
+        assert_eq!(
+            notes,
+            [
+                "the header's default thickness of 0.0001 is that of all points, in the file's unit",
+                "the header's default transparency of 0.25 is not used; it follows from the fiber's width",
+                "the header's default color of 1, 0.5, 0.25 is not used; set the color in [groom.look]",
+            ]
+        );
+        // A line width for display, as most files have it.
+        let (radii, notes) = finished(&file(0.1, 0.0, [0.0; 3]));
+        assert_eq!((radii, notes.len()), (vec![DEFAULT_RADIUS; 3], 2));
+        assert!(notes[1].contains("radius of 50.000 mm, which is taken for a display width"), "{notes:?}");
+    }
+
+    #[test]
+    fn defaults_that_are_no_values_are_reported() {
+        let (radii, notes) = finished(&file(f32::NAN, -1.0, [f32::INFINITY, 0.0, 0.0]));
+        assert_eq!((radii, notes.len()), (vec![DEFAULT_RADIUS; 3], 3));
+        for (note, name) in notes.iter().zip(["thickness of NaN", "transparency of -1", "color of inf, 0, 0"])
+        {
+            assert!(note.contains(name) && note.contains("is not used, because it must be finite"), "{note}");
+        }
+    }
 }

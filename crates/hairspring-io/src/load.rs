@@ -49,6 +49,24 @@ pub enum Format {
 }
 
 impl Format {
+    /// All formats.
+    const ALL: [Format; 14] = [
+        Format::Hair,
+        Format::Tfx,
+        Format::Usc,
+        Format::TfxBone,
+        Format::TfxMesh,
+        Format::Obj,
+        Format::Gltf,
+        Format::Bvh,
+        Format::Usd,
+        Format::Alembic,
+        Format::Pc2,
+        Format::Csv,
+        Format::Ply,
+        Format::Scene,
+    ];
+
     /// Formats that hold a groom. These can also be written.
     pub const GROOMS: [Format; 3] = [Format::Hair, Format::Tfx, Format::Usc];
 
@@ -61,42 +79,31 @@ impl Format {
     /// Returns the format for a path's extension, ignoring case; `None` for an unknown extension.
     pub fn of(path: &Path) -> Option<Format> {
         let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        Some(match extension.as_str() {
-            "hair" => Self::Hair,
-            "tfx" => Self::Tfx,
-            "data" => Self::Usc,
-            "tfxbone" => Self::TfxBone,
-            "tfxmesh" => Self::TfxMesh,
-            "obj" => Self::Obj,
-            "gltf" | "glb" | "vrm" => Self::Gltf,
-            "bvh" => Self::Bvh,
-            "usd" | "usda" | "usdc" | "usdz" => Self::Usd,
-            "abc" => Self::Alembic,
-            "pc2" => Self::Pc2,
-            "csv" => Self::Csv,
-            "ply" => Self::Ply,
-            "toml" => Self::Scene,
-            _ => return None,
-        })
+        Self::ALL.into_iter().find(|format| format.extensions().contains(&extension.as_str()))
     }
 
     /// Returns the format's usual extension, without the dot.
     pub fn name(self) -> &'static str {
+        self.extensions()[0]
+    }
+
+    /// Returns all extensions of the format, without the dot.
+    pub fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Hair => "hair",
-            Self::Tfx => "tfx",
-            Self::Usc => "data",
-            Self::TfxBone => "tfxbone",
-            Self::TfxMesh => "tfxmesh",
-            Self::Obj => "obj",
-            Self::Gltf => "gltf",
-            Self::Bvh => "bvh",
-            Self::Usd => "usd",
-            Self::Alembic => "abc",
-            Self::Pc2 => "pc2",
-            Self::Csv => "csv",
-            Self::Ply => "ply",
-            Self::Scene => "toml",
+            Self::Hair => &["hair"],
+            Self::Tfx => &["tfx"],
+            Self::Usc => &["data"],
+            Self::TfxBone => &["tfxbone"],
+            Self::TfxMesh => &["tfxmesh"],
+            Self::Obj => &["obj"],
+            Self::Gltf => &["gltf", "glb", "vrm"],
+            Self::Bvh => &["bvh"],
+            Self::Usd => &["usd", "usda", "usdc", "usdz"],
+            Self::Alembic => &["abc"],
+            Self::Pc2 => &["pc2"],
+            Self::Csv => &["csv"],
+            Self::Ply => &["ply"],
+            Self::Scene => &["toml"],
         }
     }
 }
@@ -154,7 +161,7 @@ pub(crate) fn read_groom_on(
     } else {
         let data = bytes_of(path)?;
         match format {
-            Format::Hair => hair::read(&data),
+            Format::Hair => hair::read(&data, options.up),
             Format::Tfx => tfx::read(&data),
             Format::Obj => obj::read_groom(&data),
             Format::Csv => csv::read(&data),
@@ -224,7 +231,15 @@ fn check_groom(path: &Path, groom: &Groom) -> Result<()> {
 pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
     let loaded = read_character(path, options)?;
     if loaded.value.body.mesh.triangles.is_empty() {
-        let text = "the file has no triangles, so it is no body; export a mesh with faces";
+        let text = match holds_only_curves(path) {
+            // Lines that are wrong are so for a groom, too.
+            true => {
+                gltf::read_groom(&bytes_of(path)?, &|name| sibling(path, name))
+                    .map_err(|p| p.in_file(path))?;
+                "the file has lines but no triangles, so it is no body; name it as a groom"
+            }
+            false => "the file has no triangles, so it is no body; export a mesh with faces",
+        };
         return Err(Problem::whole(text).in_file(path));
     }
     Ok(loaded)
@@ -356,7 +371,8 @@ fn still(body: Body) -> Character {
 /// Returns the format of `path`, which must be one of `known`.
 fn format_of(path: &Path, known: &[Format], what: &str) -> Result<Format> {
     Format::of(path).filter(|f| known.contains(f)).ok_or_else(|| {
-        let names: Vec<String> = known.iter().map(|f| format!(".{}", f.name())).collect();
+        let names: Vec<String> =
+            known.iter().flat_map(|f| f.extensions()).map(|extension| format!(".{extension}")).collect();
         let reason = format!("unknown extension; {what} is read from {}", names.join(", "));
         Error::Unsupported { path: path.to_owned(), reason }
     })

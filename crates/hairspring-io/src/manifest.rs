@@ -3,16 +3,12 @@
 //! It is a JSON file in the folder of the sequence. A resumed run compares its own inputs and options with the manifest,
 //! and verifies the checksum of each finished file.
 
-use crate::observe_files;
+use crate::inputs::{Checksum, Inputs};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest as _, Sha256};
 use std::{
-    cell::RefCell,
     collections::{BTreeMap, BTreeSet},
-    fs::File,
-    io::{self, ErrorKind, Read},
+    io::{self, ErrorKind},
     path::{Path, PathBuf},
-    rc::Rc,
     time::{Duration, Instant},
 };
 
@@ -41,39 +37,6 @@ pub enum ManifestError {
     /// The manifest cannot be written, or a finished file cannot be read back.
     #[error("{0}")]
     Unwritable(String),
-}
-
-/// Length and checksum of a file.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-struct Checksum {
-    /// Length [bytes].
-    bytes: u64,
-    /// SHA-256 in hexadecimal, as `sha256sum` prints it.
-    sha256: String,
-}
-
-impl Checksum {
-    fn of_bytes(bytes: &[u8]) -> Self {
-        Self { bytes: bytes.len() as u64, sha256: hexadecimal(Sha256::digest(bytes).as_slice()) }
-    }
-
-    fn of_file(path: &Path) -> io::Result<Self> {
-        let mut file = File::open(path)?;
-        let (mut hash, mut bytes, mut part) = (Sha256::new(), 0, vec![0; 1 << 20]);
-        loop {
-            match file.read(&mut part)? {
-                0 => return Ok(Self { bytes, sha256: hexadecimal(hash.finalize().as_slice()) }),
-                n => {
-                    hash.update(&part[..n]);
-                    bytes += n as u64;
-                }
-            }
-        }
-    }
-}
-
-fn hexadecimal(hash: &[u8]) -> String {
-    hash.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Everything that the content of the files depends on.
@@ -105,7 +68,7 @@ impl Origin {
                 .iter()
                 .filter_map(|(name, value)| Some(((*name).into(), value.clone()?)))
                 .collect(),
-            inputs: inputs.0,
+            inputs: inputs.into_checksums(),
         }
     }
 
@@ -138,52 +101,6 @@ impl Origin {
             found.push(format!("{name} was not read before"));
         }
         found
-    }
-}
-
-/// The files that were read, and their checksums.
-#[derive(Clone, Debug, Default)]
-pub struct Inputs(BTreeMap<String, Checksum>);
-
-impl Inputs {
-    /// The names of the files and their SHA-256 in hexadecimal.
-    pub fn checksums(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.0.iter().map(|(name, checksum)| (name.as_str(), checksum.sha256.as_str()))
-    }
-
-    /// The paths of the files that the scene or groom `main` consists of.
-    pub fn paths(&self, main: &Path) -> impl Iterator<Item = PathBuf> {
-        let folder = main.parent().unwrap_or(Path::new("")).to_owned();
-        self.0.keys().map(move |name| folder.join(name))
-    }
-
-    /// Names of files that both have read with different content.
-    #[must_use]
-    pub fn changed(&self, other: &Self) -> Vec<String> {
-        let differs =
-            |(name, checksum): &(&String, &Checksum)| other.0.get(*name).is_some_and(|c| c != *checksum);
-        self.0.iter().filter(differs).map(|(name, _)| name.clone()).collect()
-    }
-
-    /// Calls `read`, which reads the scene or groom `main`, and records all files that it reads.
-    pub fn record<T>(main: &Path, read: impl FnOnce() -> T) -> (T, Self) {
-        let folder = main.parent().unwrap_or(Path::new("")).to_owned();
-        let inputs = Rc::new(RefCell::new(Self::default()));
-        let sink = inputs.clone();
-        let observe = move |path: &Path, content: &[u8]| {
-            let name = path.strip_prefix(&folder).unwrap_or(path).display().to_string();
-            sink.borrow_mut().0.entry(name).or_insert_with(|| Checksum::of_bytes(content));
-        };
-        let result = observe_files(observe, read);
-        (result, inputs.take())
-    }
-
-    /// The same for the scene `main` whose text is `text`, which may not be saved.
-    pub fn record_text<T>(main: &Path, text: &str, read: impl FnOnce() -> T) -> (T, Self) {
-        let (result, mut inputs) = Self::record(main, read);
-        let name = main.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        inputs.0.insert(name, Checksum::of_bytes(text.as_bytes()));
-        (result, inputs)
     }
 }
 
@@ -328,16 +245,22 @@ impl Manifest {
     /// Writes the manifest. Files that another run of the same origin has finished meanwhile stay listed.
     ///
     /// # Errors
-    /// Returns an error if it cannot be written.
+    /// Returns an error if it cannot be written, or if a run of another origin has replaced it since the last time: both
+    /// write to the same files.
     pub fn write(&mut self) -> Result<(), ManifestError> {
         let began = Instant::now();
-        if let Ok(Some(there)) = read(&self.path)
-            && there.origin == self.content.origin
-        {
-            for (name, checksum) in there.files {
-                if !self.replaced.contains(&name) {
-                    self.content.files.insert(name, checksum);
+        if let Ok(Some(there)) = read(&self.path) {
+            if there.origin == self.content.origin {
+                for (name, checksum) in there.files {
+                    if !self.replaced.contains(&name) {
+                        self.content.files.insert(name, checksum);
+                    }
                 }
+            } else if self.written.is_some() {
+                return Err(ManifestError::Unwritable(format!(
+                    "another run with other inputs or options writes to the files of {}; give each run its own output",
+                    self.path.display()
+                )));
             }
         }
         let failed = |why: &dyn std::fmt::Display| {
@@ -388,12 +311,20 @@ mod tests {
     }
 
     #[test]
-    fn checksums_are_those_of_sha256sum() {
+    fn a_run_whose_manifest_was_replaced_by_another_run_ends() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("abc");
-        std::fs::write(&path, "abc").unwrap();
-        let known = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
-        assert_eq!(Checksum::of_file(&path).unwrap(), Checksum { bytes: 3, sha256: known.into() });
-        assert_eq!(Checksum::of_bytes(b"abc").sha256, known);
+        let pattern = folder.path().join("hair.##.data");
+        let begin = |fps: &str| {
+            let origin = Origin::new("bake", &[("fps", Some(fps.into()))], Inputs::default());
+            Manifest::begin(&pattern, origin, false).unwrap().0
+        };
+        let [mut first, mut same, mut other] = ["30", "30", "24"].map(begin);
+        first.write().unwrap();
+        same.write().unwrap();
+        first.write().unwrap();
+        other.write().unwrap();
+        let why = first.write().unwrap_err().to_string();
+        assert!(why.contains("another run") && why.contains("hair.bake.data.json"), "{why}");
+        other.write().unwrap();
     }
 }

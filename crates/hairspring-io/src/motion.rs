@@ -1,6 +1,7 @@
 //! A motion as a file holds it: a skeleton and a clip for it.
 
 use crate::{Place, Problem};
+use glam::Vec3;
 use hairspring::body::{Clip, Joint};
 
 /// A skeleton and a clip for its joints.
@@ -22,6 +23,21 @@ pub(crate) fn check_samples(frames: usize, joints: usize, place: Place) -> Resul
             "{frames} frames of {joints} joints are above the limit of {MAX_SAMPLES} samples; cut the motion"
         );
         return Err(Problem::limit(place, text));
+    }
+    Ok(())
+}
+
+/// Checks the positions of vertices over time; shape `[samples][vertices]`.
+pub(crate) fn check_positions(samples: &[Vec<Vec3>]) -> Result<(), Problem> {
+    if samples.is_empty() {
+        return Err(Problem::whole("the file has no samples of the vertices; export the motion again"));
+    }
+    for (k, sample) in samples.iter().enumerate() {
+        if let Some(vertex) = sample.iter().position(|p| !p.is_finite()) {
+            let text =
+                format!("vertex {vertex} of sample {k} is not finite; correct the mesh and export it again");
+            return Err(Problem::whole(text));
+        }
     }
     Ok(())
 }

@@ -6,10 +6,11 @@
 //! computed. Materials are not read: a scene file sets the color.
 
 use crate::{
-    Place, Problem, chains, color,
+    Place, Problem, color,
     polygon::triangulate,
+    polylines::Polylines,
     strands::Read,
-    text::{self, Lines, as_text, finite, shortened},
+    text::{self, Lines, as_text, decimal_comma, finite, shortened},
     units::FileUnits,
 };
 use glam::{Vec2, Vec3};
@@ -18,6 +19,9 @@ use hairspring::{
     groom::Groom,
 };
 use std::{borrow::Cow, iter::Enumerate};
+
+/// Number of polylines from which on a name for each of them is that of a strand, not of a group.
+const NAMED_STRANDS: usize = 64;
 
 /// Color of a surface whose file does not specify one: a neutral light gray, linear RGB.
 pub const DEFAULT_COLOR: Vec3 = Vec3::splat(0.5);
@@ -81,6 +85,10 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
         return Err(Problem::limit(Place::Whole, "more than 4 billion vertices or triangles"));
     }
     if mesh.triangles.is_empty() {
+        if left_out.lines > 0 {
+            // Polylines that are wrong are so for a groom, too.
+            read_groom(data)?;
+        }
         return Err(Problem::whole(left_out.instead_of_faces()));
     }
     if vertex_uv.iter().any(|uv| *uv != u32::MAX) {
@@ -116,7 +124,7 @@ pub(crate) fn holds_polylines(data: &[u8]) -> bool {
     first == Some(true)
 }
 
-/// Reads the polylines of an `.obj` file. The first point of each is its root.
+/// Reads the polylines of an `.obj` file. The first point of each is its root. Those below a name (`g`, `o`) are a group.
 pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     let text = as_text(data);
     let (mut vertices, mut uvs): (Vec<Vec3>, Vec<Vec2>) = (Vec::new(), Vec::new());
@@ -148,6 +156,10 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
                     return Err(Problem::limit(Place::Line(line_number), "more than 4 billion points"));
                 }
             }
+            Some("g" | "o") => {
+                let name = words.collect::<Vec<_>>().join(" ");
+                lines.begin_group(text::name(&name));
+            }
             _ => {}
         }
     }
@@ -158,20 +170,30 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     }
     let mut notes = Vec::new();
     notes.extend(lines.join());
+    let closed = lines.closed();
     let root_uvs: Vec<_> =
         lines.roots().map(|root| lines.uv(root).and_then(|uv| uvs.get(uv as usize))).collect();
-    let groom = Groom {
+    let mapped = root_uvs.iter().flatten().count();
+    let mut groom = Groom {
         points: lines.order.iter().map(|v| vertices[*v as usize]).collect(),
-        root_uvs: match root_uvs.iter().any(Option::is_some) {
-            true => root_uvs.iter().map(|uv| uv.copied().unwrap_or_default()).collect(),
-            false => Vec::new(),
+        root_uvs: match mapped {
+            0 => Vec::new(),
+            _ => root_uvs.iter().map(|uv| uv.copied().unwrap_or_default()).collect(),
         },
         offsets: lines.offsets,
         ..Groom::default()
     };
+    if groom.strand_count() >= NAMED_STRANDS && lines.groups.count() == groom.strand_count() {
+        notes.push("each polyline has its own name, so names are not used as groups".into());
+    } else {
+        notes.extend(lines.groups.apply(&mut groom));
+    }
+    let unmapped = if mapped > 0 { groom.strand_count() - mapped } else { 0 };
     for (count, text) in [
         (faces, "faces are left out, because a groom is read from polylines"),
         (points, "polylines of one point are left out"),
+        (closed, "closed polylines are opened at their first point, which is the root"),
+        (unmapped, "strands have no texture coordinates and get 0, 0; give each root one"),
         (colored, "vertices have a color, which is not used; write a .ply to keep it"),
     ] {
         if count > 0 {
@@ -179,75 +201,6 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
         }
     }
     Ok(Read { groom, radii: None, true_radii: false, units: FileUnits::default(), notes })
-}
-
-/// The polylines of a file, as vertices.
-#[derive(Default)]
-struct Polylines {
-    /// Vertices, polyline after polyline.
-    order: Vec<u32>,
-    /// Index in `order` of each polyline's first vertex, and the length of `order` at the end.
-    offsets: Vec<u32>,
-    /// Vertices with texture coordinates, and those.
-    uvs: Vec<[u32; 2]>,
-    /// Whether a line has more than two vertices.
-    has_polylines: bool,
-}
-
-impl Polylines {
-    /// Starts a line at a vertex. Some programs write each segment as a line of its own: one that begins where the
-    /// line before it ends continues the polyline.
-    fn begin(&mut self, corner: (u32, Option<u32>)) {
-        if self.offsets.is_empty() {
-            self.offsets.push(0);
-        }
-        if self.order.last() != Some(&corner.0) {
-            self.offsets.push(self.order.len() as u32);
-            self.push(corner);
-        }
-    }
-
-    /// Adds a vertex to the last polyline.
-    fn push(&mut self, (vertex, uv): (u32, Option<u32>)) {
-        self.order.push(vertex);
-        self.uvs.extend(uv.map(|uv| [vertex, uv]));
-        if let Some(end) = self.offsets.last_mut() {
-            *end = self.order.len() as u32;
-        }
-    }
-
-    /// Joins segments that share an end, in any order and direction, if the file has nothing but segments. Returns a
-    /// note if there are any. With a vertex of more than two segments, nothing is joined.
-    fn join(&mut self) -> Option<String> {
-        self.uvs.sort_unstable();
-        if self.has_polylines {
-            return None;
-        }
-        let mut vertices = self.order.clone();
-        vertices.sort_unstable();
-        vertices.windows(2).find(|pair| pair[0] == pair[1])?;
-        let lines = self.offsets.windows(2).map(|line| &self.order[line[0] as usize..line[1] as usize]);
-        let edges: Vec<[u32; 2]> =
-            lines.flat_map(|line| line.windows(2)).map(|edge| [edge[0], edge[1]]).collect();
-        let joined = chains::join(&edges).ok()?;
-        let before = self.offsets.len() - 1;
-        (self.order, self.offsets) = (joined.order, joined.offsets);
-        Some(format!("{before} lines that share their ends are joined to {} strands", self.offsets.len() - 1))
-    }
-
-    /// The first vertex of each polyline.
-    fn roots(&self) -> impl Iterator<Item = u32> {
-        self.offsets
-            .iter()
-            .take(self.offsets.len().saturating_sub(1))
-            .map(|first| self.order[*first as usize])
-    }
-
-    /// Index of the texture coordinates of a vertex.
-    fn uv(&self, vertex: u32) -> Option<u32> {
-        let at = self.uvs.partition_point(|uv| uv[0] < vertex);
-        self.uvs.get(at).filter(|uv| uv[0] == vertex).map(|uv| uv[1])
-    }
 }
 
 /// What a mesh of the file lacks.
@@ -370,7 +323,11 @@ fn numbers<'a, const N: usize>(
     for x in &mut out {
         let word = words.next().unwrap_or("");
         *x = finite(word).ok_or_else(|| {
-            Problem::line(line, format!("expected {what} of {}, found `{}`", plural(N), shortened(word)))
+            let hint = decimal_comma(word);
+            Problem::line(
+                line,
+                format!("expected {what} of {}, found `{}`{hint}", plural(N), shortened(word)),
+            )
         })?;
     }
     Ok(out)

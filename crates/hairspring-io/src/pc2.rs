@@ -10,6 +10,7 @@ use crate::{
     Place, Problem,
     bytes::Bytes,
     external::{CacheDescription, CacheWriter},
+    motion::check_positions,
 };
 use bytemuck::{bytes_of, cast_slice};
 use glam::Vec3;
@@ -48,7 +49,8 @@ pub struct PointCache {
 /// Reads a point cache, in its own units.
 ///
 /// # Errors
-/// Returns an error for another version, counts below zero, or samples that the file is too short for.
+/// Returns an error for another version, counts below zero, samples that the file is too short for, no samples, or a
+/// position that is not finite.
 pub fn parse(data: &[u8]) -> Result<PointCache, Problem> {
     let mut bytes = Bytes::new(data);
     if bytes.take(MAGIC.len(), "the header")? != MAGIC {
@@ -84,6 +86,7 @@ pub fn parse(data: &[u8]) -> Result<PointCache, Problem> {
         let text = format!("{} bytes are left after the last of {samples} samples", bytes.remaining());
         return Err(wrong(bytes.at(), text));
     }
+    check_positions(&read)?;
     Ok(PointCache { first_frame, frames_per_sample, samples: read })
 }
 

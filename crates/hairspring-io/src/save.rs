@@ -1,7 +1,7 @@
 //! Writes a groom to a file that is either complete or absent.
 
 use crate::{Error, Format, Result, Strands, hair, tfx, usc};
-use hairspring::groom::Groom;
+use hairspring::groom::{DEFAULT_RADIUS, Groom};
 use std::{
     io::{self, Write},
     path::Path,
@@ -22,10 +22,11 @@ pub fn write_groom(path: &Path, groom: &Groom) -> Result<Vec<String>> {
         (!groom.scales.is_empty(), "per-strand multipliers"),
         (!groom.guides.is_empty(), "guide weights"),
         (!groom.roots.is_empty(), "root bindings"),
-        (!groom.root_uvs.is_empty() && format != Format::Tfx, "texture coordinates"),
-        (!groom.colors.is_empty() && format == Format::Usc, "colors"),
+        (!groom.root_uvs.is_empty() && !holds_root_uvs(format), "texture coordinates"),
+        (!groom.colors.is_empty() && !holds_colors(format), "colors"),
         (varies_along(groom) && format == Format::Tfx, "radii that vary along a strand"),
-        (format == Format::Usc, "radii"),
+        // A reader gives the points of a .data file the default radius.
+        (format == Format::Usc && groom.radii.iter().any(|r| *r != DEFAULT_RADIUS), "radii"),
     ];
     let names: Vec<&str> = parts.iter().filter(|(there, _)| *there).map(|(_, name)| *name).collect();
     if !names.is_empty() {
@@ -40,25 +41,8 @@ pub fn write_groom(path: &Path, groom: &Groom) -> Result<Vec<String>> {
 /// # Errors
 /// See [`write_groom`].
 pub fn write_strands(path: &Path, strands: Strands<'_>) -> Result<Format> {
-    let unwritable = |reason: String| Error::Unwritable { path: path.to_owned(), reason };
-    let format =
-        Format::of(path).filter(|f| Format::GROOMS.contains(f)).ok_or_else(|| Error::Unsupported {
-            path: path.to_owned(),
-            reason: "unknown extension; a groom is written as .hair, .tfx or .data".into(),
-        })?;
-    strands.check().map_err(unwritable)?;
-    let misfit = match format {
-        Format::Tfx => tfx::misfit(&strands),
-        Format::Hair => strands.counts().position(|n| n > 1 << 16).map(|s| {
-            format!(
-                "strand {s} has more than the 65,536 points that a .hair file can hold; write .data instead"
-            )
-        }),
-        _ => None,
-    };
-    if let Some(reason) = misfit {
-        return Err(unwritable(reason));
-    }
+    strands.check().map_err(|reason| Error::Unwritable { path: path.to_owned(), reason })?;
+    let format = format_for(path, &strands)?;
     atomically(path, |out| match format {
         Format::Hair => hair::write(out, &strands),
         Format::Tfx => tfx::write(out, &strands),
@@ -66,6 +50,38 @@ pub fn write_strands(path: &Path, strands: Strands<'_>) -> Result<Format> {
     })
     .map_err(|source| Error::Write { path: path.to_owned(), source })?;
     Ok(format)
+}
+
+/// Returns the format of a path, which must be able to hold strands with these numbers of points.
+pub(crate) fn format_for(path: &Path, strands: &Strands<'_>) -> Result<Format> {
+    let format =
+        Format::of(path).filter(|f| Format::GROOMS.contains(f)).ok_or_else(|| Error::Unsupported {
+            path: path.to_owned(),
+            reason: "unknown extension; a groom is written as .hair, .tfx or .data".into(),
+        })?;
+    let misfit = match format {
+        Format::Tfx => tfx::misfit(strands),
+        Format::Hair => strands.counts().position(|n| n > 1 << 16).map(|s| {
+            format!(
+                "strand {s} has more than the 65,536 points that a .hair file can hold; write .data instead"
+            )
+        }),
+        _ => None,
+    };
+    match misfit {
+        Some(reason) => Err(Error::Unwritable { path: path.to_owned(), reason }),
+        None => Ok(format),
+    }
+}
+
+/// Whether a format for grooms holds a color at each point.
+pub(crate) fn holds_colors(format: Format) -> bool {
+    format != Format::Usc
+}
+
+/// Whether a format for grooms holds texture coordinates of each root.
+pub(crate) fn holds_root_uvs(format: Format) -> bool {
+    format == Format::Tfx
 }
 
 /// Whether any strand's radius varies along its points.
@@ -77,7 +93,7 @@ fn varies_along(groom: &Groom) -> bool {
 }
 
 /// Writes a file atomically. `write` fills a temporary file in the folder of `path`, which is written to the
-/// disk and then renamed. The finished file has the permissions of a new file.
+/// disk and then renamed. The finished file has the permissions of the file that it replaces, or those of a new file.
 ///
 /// # Errors
 /// Returns the error of `write` or of the system. Nothing is left behind in that case.

@@ -1,12 +1,13 @@
 //! Attributes of whole strands in a table: group, guide flag, texture coordinates of the root, density mask, and
 //! factors of the material.
 
-use crate::strands::Read;
+use crate::{Problem, strands::Read};
 use glam::Vec2;
 use hairspring::{
     follow::assign_guides,
-    groom::{GuideWeights, StrandScale, thin},
+    groom::{Groom, GuideWeights, StrandScale, thin},
 };
+use std::collections::HashMap;
 
 /// Names of the attributes that are numbers, in the order of [`StrandAttributes::numbers`].
 pub(crate) const NUMBERS: [&str; 11] = [
@@ -34,34 +35,63 @@ const MOST_GROUPS: usize = 1 << 16;
 pub(crate) struct StrandAttributes {
     /// Values of each of [`NUMBERS`]; shape `[strands]`, or empty if the file has none.
     pub numbers: [Vec<f32>; NUMBERS.len()],
-    /// Group of each strand; shape `[strands]`, or empty.
-    pub groups: Vec<String>,
+    /// Group of each strand.
+    pub groups: StrandGroups,
+}
+
+/// Groups of strands by their names, in the order in which they appear.
+#[derive(Default)]
+pub(crate) struct StrandGroups {
+    indices: HashMap<String, usize>,
+    names: Vec<String>,
+    /// Index of the group of each strand; shape `[strands]`, or empty.
+    pub of_strands: Vec<usize>,
+}
+
+impl StrandGroups {
+    /// Returns the index of the group called `name`, which is added if it is new.
+    pub fn index(&mut self, name: &str) -> usize {
+        if let Some(index) = self.indices.get(name) {
+            return *index;
+        }
+        self.indices.insert(name.to_owned(), self.names.len());
+        self.names.push(name.to_owned());
+        self.names.len() - 1
+    }
+
+    /// Number of groups.
+    pub fn count(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Puts the groups into a groom, unless there is only one without a name. Returns a note if there are too many.
+    pub fn apply(self, groom: &mut Groom) -> Option<String> {
+        if self.names == [""] {
+            return None;
+        }
+        if self.names.len() > MOST_GROUPS {
+            let count = self.names.len();
+            return Some(format!(
+                "{count} groups are more than the limit of {MOST_GROUPS}, so all strands are in one"
+            ));
+        }
+        groom.groups = self.of_strands.into_iter().map(|group| group as u16).collect();
+        groom.group_names = self.names;
+        None
+    }
 }
 
 impl StrandAttributes {
-    /// Puts the attributes into a groom. Notes say what could not be used.
-    pub fn apply(self, read: &mut Read) {
+    /// Puts the attributes into a groom. Notes say what could not be used, and what was removed.
+    ///
+    /// # Errors
+    /// Returns an error if the density keeps no strand.
+    pub fn apply(self, read: &mut Read) -> Result<(), Problem> {
         let groom = &mut read.groom;
         let strands = groom.strand_count();
         let [stiffness, damping, drag, friction, charge, flatness, tether, density, guide, u, v] =
             self.numbers;
-        if !self.groups.is_empty() {
-            let mut names: Vec<String> = Vec::new();
-            let index = |name: &String, names: &mut Vec<String>| match names.iter().position(|n| n == name) {
-                Some(k) => k,
-                None => {
-                    names.push(name.clone());
-                    names.len() - 1
-                }
-            };
-            let groups: Vec<usize> = self.groups.iter().map(|name| index(name, &mut names)).collect();
-            if names.len() > MOST_GROUPS {
-                read.notes.push(format!("more than {MOST_GROUPS} groups; all strands are in one"));
-            } else {
-                groom.groups = groups.into_iter().map(|g| g as u16).collect();
-                groom.group_names = names;
-            }
-        }
+        read.notes.extend(self.groups.apply(groom));
         if u.len() == strands && v.len() == strands {
             groom.root_uvs = u.iter().zip(&v).map(|(u, v)| Vec2::new(*u, *v)).collect();
         }
@@ -99,6 +129,20 @@ impl StrandAttributes {
             thin(groom, &density);
             let radii = std::mem::take(&mut groom.radii);
             read.radii = (!radii.is_empty()).then_some(radii);
+            read.notes.extend(kept_by_density(groom.strand_count(), strands)?);
         }
+        Ok(())
     }
+}
+
+/// Returns a note about the strands that the density removed.
+///
+/// # Errors
+/// Returns an error if it removed all of them.
+fn kept_by_density(kept: usize, strands: usize) -> Result<Option<String>, Problem> {
+    if kept == 0 && strands > 0 {
+        let text = format!("density keeps none of the {strands} strands; raise it above 0");
+        return Err(Problem::whole(text));
+    }
+    Ok((kept < strands).then(|| format!("density keeps {kept} of {strands} strands")))
 }

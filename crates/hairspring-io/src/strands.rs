@@ -103,22 +103,22 @@ impl Read {
             None => vec![DEFAULT_RADIUS; self.groom.points.len()],
             Some(mut radii) => {
                 radii.iter_mut().for_each(|r| *r *= scale);
-                let mut sorted: Vec<f32> = radii.iter().copied().filter(|r| r.is_finite()).collect();
-                let middle = sorted.len() / 2;
-                let median = if sorted.is_empty() {
-                    0.0
-                } else {
-                    *sorted.select_nth_unstable_by(middle, f32::total_cmp).1
-                };
-                if self.true_radii || BELIEVABLE_RADIUS.contains(&median) {
-                    radii
-                } else {
-                    self.notes.push(format!(
-                        "the file's thickness gives fibers a radius of {:.3} mm, which is taken for a display width; {:.3} mm is used instead",
-                        median * 1e3,
-                        DEFAULT_RADIUS * 1e3
-                    ));
-                    vec![DEFAULT_RADIUS; radii.len()]
+                // Others are repaired later, and counted.
+                let mut valid: Vec<f32> =
+                    radii.iter().copied().filter(|r| r.is_finite() && *r > 0.0).collect();
+                let middle = valid.len() / 2;
+                let median =
+                    (!valid.is_empty()).then(|| *valid.select_nth_unstable_by(middle, f32::total_cmp).1);
+                match median.filter(|m| !self.true_radii && !BELIEVABLE_RADIUS.contains(m)) {
+                    None => radii,
+                    Some(median) => {
+                        self.notes.push(format!(
+                            "the file's thickness gives fibers a radius of {:.3} mm, which is taken for a display width; {:.3} mm is used instead",
+                            median * 1e3,
+                            DEFAULT_RADIUS * 1e3
+                        ));
+                        vec![DEFAULT_RADIUS; radii.len()]
+                    }
                 }
             }
         };

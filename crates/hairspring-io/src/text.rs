@@ -100,7 +100,7 @@ impl<'a> Words<'a> {
     /// Says that `what` was expected, but `found` was read.
     pub(crate) fn missing(&self, what: &str, found: Option<&str>) -> Problem {
         let found = match found {
-            Some(word) => format!("found `{}`", shortened(word)),
+            Some(word) => format!("found `{}`{}", shortened(word), decimal_comma(word)),
             None => "the file ends".into(),
         };
         Problem::line(self.line, format!("expected {what}, {found}"))
@@ -110,6 +110,12 @@ impl<'a> Words<'a> {
 /// Parses `word` as a finite number.
 pub(crate) fn finite(word: &str) -> Option<f32> {
     word.parse().ok().filter(|x: &f32| x.is_finite())
+}
+
+/// Returns what to do about a word that is no number, for the end of a message: if it has a decimal comma, to use points.
+pub(crate) fn decimal_comma(word: &str) -> &'static str {
+    let is_number = word.contains(',') && finite(&word.replacen(',', ".", 1)).is_some();
+    if is_number { "; use decimal points" } else { "" }
 }
 
 /// A word of the file for a message: its first 40 characters.

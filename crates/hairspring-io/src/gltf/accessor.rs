@@ -99,6 +99,13 @@ pub(super) fn components<const N: usize>(
     let mut elements = match accessor.buffer_view {
         Some(view) => {
             let (bytes, stride) = bytes_of(view, accessor.byte_offset)?;
+            // Some programs give elements without space between them a stride, whatever their size is (§3.6.2.4).
+            let size = kind.width() * N;
+            if let Some(stride) = stride.filter(|s| *s != size && (*s < size || s % 4 != 0)) {
+                return Err(wrong(&format!(
+                    "have a byteStride of {stride}, which must be a multiple of 4 and at least the {size} bytes of an element; export the file again"
+                )));
+            }
             layout.elements(bytes, stride, count, buffers)?.ok_or_else(outside)?
         }
         // Zeros, most of which a sparse accessor replaces.
@@ -158,7 +165,7 @@ impl Layout {
             return Ok(Some(Vec::new()));
         }
         let needed = stride.checked_mul(count - 1).and_then(|n| n.checked_add(size));
-        if stride < size || needed.is_none_or(|n| n > bytes.len()) {
+        if needed.is_none_or(|n| n > bytes.len()) {
             return Ok(None);
         }
         buffers.spend(count.saturating_mul(N))?;

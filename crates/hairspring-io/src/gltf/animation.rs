@@ -62,6 +62,8 @@ struct LeftOut {
     others: usize,
     /// Of a property that a later channel of the same animation moves, too.
     repeated: usize,
+    /// Keys of rotations of zero length, which are no channels.
+    zero_rotations: usize,
 }
 
 /// Converts every animation to a clip of the skeleton's joints, and to weights of the morph targets of `objects`.
@@ -81,7 +83,8 @@ pub(super) fn clips(
     for (index, animation) in document.animations.iter().enumerate() {
         let name = animation.name.as_deref().map_or_else(|| format!("animation{index}"), text::name);
         let mut weights = ClipWeights::default();
-        let tracks = reader.tracks(animation, skeleton, (&mut morphs, &mut weights), &mut left_out)?;
+        let tracks =
+            reader.tracks((animation, &name), skeleton, (&mut morphs, &mut weights), &mut left_out)?;
         let of_weights = || weights.tracks.iter().map(|(_, keys)| morphs.times(*keys));
         let times = || tracks.iter().map(|t| &t.keys.times[..]).chain(of_weights());
         let start = times().filter_map(|t| t.first()).copied().fold(f32::INFINITY, f32::min);
@@ -178,6 +181,12 @@ impl LeftOut {
             let (channels, _) = left_out(self.repeated);
             notes.push(format!("{channels}, because a later one moves the same joint; export each once"));
         }
+        if self.zero_rotations > 0 {
+            notes.push(format!(
+                "{} keys of rotations are 0, 0, 0, 0, which is no rotation; the key before each is used; export the animation again",
+                self.zero_rotations
+            ));
+        }
     }
 }
 
@@ -193,7 +202,7 @@ impl Reader<'_> {
     /// Reads the channels that move a joint: one for each property of a joint. Those of weights are added to `weights`.
     fn tracks(
         &mut self,
-        animation: &Animation,
+        (animation, name): (&Animation, &str),
         skeleton: &Skeleton,
         (morphs, weights): (&mut morph::Reader<'_>, &mut ClipWeights),
         left_out: &mut LeftOut,
@@ -212,13 +221,13 @@ impl Reader<'_> {
                 (Path::Other, _) | (_, None) => left_out.others += 1,
                 (_, Some(joint)) if !moved.insert((joint, property)) => left_out.repeated += 1,
                 (Path::Weights, _) => {
-                    match morphs.track(animation, channel.sampler, node.unwrap_or_default())? {
+                    match morphs.track((animation, name), channel.sampler, node.unwrap_or_default())? {
                         Some(track) => weights.tracks.push(track),
                         None => left_out.morphs += 1,
                     }
                 }
                 (_, Some(joint)) => {
-                    let keys = self.keys(animation, channel.sampler, property)?;
+                    let keys = self.keys((animation, name), channel.sampler, property, left_out)?;
                     tracks.push(Track { joint: joint as usize, property, keys });
                 }
             }
@@ -228,7 +237,13 @@ impl Reader<'_> {
     }
 
     /// Reads the keys of a sampler.
-    fn keys(&mut self, animation: &Animation, sampler: usize, property: Path) -> Result<Rc<Keys>, Problem> {
+    fn keys(
+        &mut self,
+        (animation, name): (&Animation, &str),
+        sampler: usize,
+        property: Path,
+        left_out: &mut LeftOut,
+    ) -> Result<Rc<Keys>, Problem> {
         let sampler = animation.samplers.get(sampler);
         let sampler =
             sampler.ok_or_else(|| Problem::whole("an animation channel refers to a missing object"))?;
@@ -242,7 +257,7 @@ impl Reader<'_> {
             .iter()
             .map(|t| t[0] as f32)
             .collect();
-        let values: Vec<Vec4> = if is_rotation {
+        let mut values: Vec<Vec4> = if is_rotation {
             let values = components::<4>(document, sampler.output, buffers, "rotations of an animation")?;
             values.iter().map(|v| Vec4::from(v.map(|x| x as f32))).collect()
         } else {
@@ -250,19 +265,62 @@ impl Reader<'_> {
             values.iter().map(|v| Vec3::from(v.map(|x| x as f32)).extend(0.0)).collect()
         };
         let interpolation = sampler.interpolation;
-        let per_key = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-        if times.is_empty() || values.len() != times.len() * per_key {
-            let text = format!("an animation has {} keys but {} values", times.len(), values.len());
-            return Err(Problem::whole(text));
-        }
+        check_count(name, interpolation, times.len(), (values.len(), 1), "values")?;
         if !times.iter().all(|t| t.is_finite()) || !times.is_sorted() || !values.iter().all(|v| v.is_finite())
         {
-            return Err(Problem::whole("the keys of an animation are not finite, or not in order of time"));
+            return Err(not_in_order(name));
+        }
+        if is_rotation {
+            left_out.zero_rotations += fill_zero_rotations(&mut values, interpolation);
         }
         let keys = Rc::new(Keys { interpolation, times, values });
         self.read.insert(key, keys.clone());
         Ok(keys)
     }
+}
+
+/// Checks the number of values of an animation's keys: `each` for a key, or three times as many for cubic splines.
+pub(super) fn check_count(
+    animation: &str,
+    interpolation: Interpolation,
+    keys: usize,
+    (values, each): (usize, usize),
+    what: &str,
+) -> Result<(), Problem> {
+    let (factor, of) =
+        if interpolation == Interpolation::CubicSpline { (3, " of a CUBICSPLINE") } else { (1, "") };
+    let per_key = each.saturating_mul(factor);
+    if keys > 0 && keys.checked_mul(per_key) == Some(values) {
+        return Ok(());
+    }
+    Err(Problem::whole(format!(
+        "animation {animation:?} has {keys} keys but {values} {what}{of}: expected {per_key} per key; export it again"
+    )))
+}
+
+/// The error for keys that are not finite, or not in order of time.
+pub(super) fn not_in_order(animation: &str) -> Problem {
+    Problem::whole(format!(
+        "the keys of animation {animation:?} are not finite, or not in order of time; export it again"
+    ))
+}
+
+/// Gives keys of rotations of zero length the rotation of the key before, or of the first other one. Returns their
+/// number.
+fn fill_zero_rotations(values: &mut [Vec4], interpolation: Interpolation) -> usize {
+    // The value of a cubic spline is between its tangents.
+    let (first, step) = if interpolation == Interpolation::CubicSpline { (1, 3) } else { (0, 1) };
+    let other = values.iter().skip(first).step_by(step).find(|v| v.try_normalize().is_some()).copied();
+    let mut before = other.unwrap_or(Vec4::W);
+    let mut count = 0;
+    for value in values.iter_mut().skip(first).step_by(step) {
+        if value.try_normalize().is_none() {
+            *value = before;
+            count += 1;
+        }
+        before = *value;
+    }
+    count
 }
 
 impl Track {

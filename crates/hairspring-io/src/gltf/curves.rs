@@ -12,7 +12,7 @@ use crate::{
     text,
     units::FileUnits,
 };
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 use hairspring::groom::Groom;
 use std::{collections::HashMap, rc::Rc};
 
@@ -47,6 +47,7 @@ pub(super) fn read(document: &Document, buffers: &Buffers<'_>) -> Result<Read, P
         groups: HashMap::new(),
         vectors: HashMap::new(),
         numbers: HashMap::new(),
+        uvs: HashMap::new(),
         found: Found::default(),
     };
     let mut world = vec![Affine3A::IDENTITY; document.nodes.len()];
@@ -66,6 +67,8 @@ struct Found {
     lines: usize,
     colored: usize,
     thick: usize,
+    /// Strands whose root has texture coordinates.
+    mapped: usize,
     /// Primitives of triangles or points.
     others: usize,
     /// Closed lines.
@@ -89,6 +92,7 @@ struct Build<'a> {
     /// Arrays that were read, by their accessor: each line of a groom may be a primitive that shares them.
     vectors: HashMap<usize, Rc<Vec<Vec3>>>,
     numbers: HashMap<usize, Rc<Vec<f32>>>,
+    uvs: HashMap<usize, Rc<Vec<Vec2>>>,
     found: Found,
 }
 
@@ -150,9 +154,12 @@ impl Build<'_> {
             (None, Some(width)) => Some((self.numbers(width, "widths")?, 0.5)),
             (None, None) => None,
         };
-        for (given, what) in
-            [(colors.as_ref().map(|c| c.len()), "colors"), (radii.as_ref().map(|r| r.0.len()), "radii")]
-        {
+        let uvs = attributes.uv.map(|uv| self.uvs(uv)).transpose()?;
+        for (given, what) in [
+            (colors.as_ref().map(|c| c.len()), "colors"),
+            (radii.as_ref().map(|r| r.0.len()), "radii"),
+            (uvs.as_ref().map(|uvs| uvs.len()), "texture coordinates"),
+        ] {
             if let Some(given) = given.filter(|given| *given != positions.len()) {
                 let text = format!("lines have {} positions but {given} {what}", positions.len());
                 return Err(Problem::whole(text));
@@ -162,6 +169,11 @@ impl Build<'_> {
         self.found.thick += usize::from(radii.is_some());
         let Chains { order, offsets } = self.chains(primitive, &positions)?;
         let size = world.matrix3.determinant().abs().cbrt();
+        for first in offsets.iter().take(offsets.len() - 1) {
+            let uv = uvs.as_ref().map(|uvs| uvs[order[*first as usize] as usize]);
+            self.found.mapped += usize::from(uv.is_some());
+            self.groom.root_uvs.push(uv.unwrap_or_default());
+        }
         for v in order.into_iter().map(|v| v as usize) {
             self.groom.points.push(world.transform_point3(positions[v]));
             let color = colors.as_ref().map_or(Vec3::ONE, |colors| colors[v]);
@@ -230,6 +242,19 @@ impl Build<'_> {
         Ok(read)
     }
 
+    /// Reads texture coordinates.
+    fn uvs(&mut self, index: usize) -> Result<Rc<Vec<Vec2>>, Problem> {
+        if let Some(read) = self.uvs.get(&index) {
+            return Ok(read.clone());
+        }
+        let read = components::<2>(self.document, index, self.buffers, "texture coordinates")?;
+        // v is downward from the upper edge in glTF.
+        let read: Vec<Vec2> = read.into_iter().map(|[u, v]| Vec2::new(u as f32, 1.0 - v as f32)).collect();
+        let read = Rc::new(read);
+        self.uvs.insert(index, Rc::clone(&read));
+        Ok(read)
+    }
+
     /// Returns the finished groom. Adds a note for each kind of data that was ignored.
     fn finish(self, mut notes: Vec<String>) -> Result<Read, Problem> {
         let Self { mut groom, radii, found, groups, .. } = self;
@@ -268,6 +293,13 @@ impl Build<'_> {
                     "primitives of lines have no COLOR_0, so all colors are left out; give each one colors",
                 );
             }
+        }
+        match found.mapped {
+            0 => groom.root_uvs.clear(),
+            mapped => note(
+                groom.strand_count() - mapped,
+                "strands have no TEXCOORD_0 and get the texture coordinates 0, 0; give each line its own",
+            ),
         }
         let radii = (found.thick == found.lines).then_some(radii);
         if radii.is_none() && found.thick > 0 {

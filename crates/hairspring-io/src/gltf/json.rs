@@ -34,8 +34,11 @@ pub(super) struct Document {
 }
 
 #[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
 struct Asset {
     version: String,
+    /// The version that a reader must know.
+    min_version: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -383,6 +386,12 @@ pub(super) fn parse(json: &[u8]) -> Result<Document, Problem> {
     if !document.asset.version.starts_with("2.") {
         return Err(version(&document.asset));
     }
+    if let Some(needed) = document.asset.min_version.as_deref().filter(|v| is_above_2_0(v)) {
+        let text = format!(
+            "it needs a reader of glTF {needed:?} (asset.minVersion), and this one reads 2.0; export it as glTF 2.0"
+        );
+        return Err(Problem::whole(text));
+    }
     for name in &document.extensions_required {
         match name.as_str() {
             "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
@@ -397,6 +406,12 @@ pub(super) fn parse(json: &[u8]) -> Result<Document, Problem> {
         }
     }
     Ok(document)
+}
+
+/// Whether a version, such as `2.1`, is above 2.0. So is one that is no pair of numbers.
+fn is_above_2_0(version: &str) -> bool {
+    let parts = version.split_once('.').map(|(major, minor)| (major.parse::<u32>(), minor.parse::<u32>()));
+    !matches!(parts, Some((Ok(major), Ok(minor))) if (major, minor) <= (2, 0))
 }
 
 fn version(asset: &Asset) -> Problem {

@@ -306,8 +306,11 @@ impl<'a> Build<'a> {
         let joint_of = |slot: u16| skin.joints.get(usize::from(slot)).copied().unwrap_or(0);
         for v in 0..count {
             let mut pairs = Vec::with_capacity(4 * sets.len());
+            let wrong = |w: &f64| !(w.is_finite() && *w >= 0.0);
+            self.left_out.wrong_weights += usize::from(sets.iter().any(|(_, all)| all[v].iter().any(wrong)));
             for (joints, weights) in &sets {
                 for (j, w) in joints[v].iter().zip(weights[v]) {
+                    let w = if wrong(&w) { 0.0 } else { w };
                     // Programs leave any number in the slots that they do not use.
                     let (slot, used) = (*j as u16, w > 0.0);
                     if used && *j >= f64::from(slots) {

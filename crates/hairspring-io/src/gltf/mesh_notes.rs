@@ -9,6 +9,8 @@ pub(super) struct LeftOut {
     pub lines: usize,
     /// Primitives without joints in a mesh with a skin.
     pub rigid: usize,
+    /// Vertices with a weight that is negative or not finite.
+    pub wrong_weights: usize,
     /// Vertices with a skin but without a weight.
     pub unweighted: usize,
     /// Vertices that follow more than four joints.
@@ -37,6 +39,10 @@ impl LeftOut {
         note(
             self.rigid,
             "primitives of a skinned mesh have no joints and move rigidly with their node; weight them to joints",
+        );
+        note(
+            self.wrong_weights,
+            "vertices of skinned meshes have weights that are below 0 or not finite, which count as 0; normalize the weights in the modeling program",
         );
         note(
             self.unweighted,

@@ -3,7 +3,7 @@
 use super::{
     Character,
     accessor::{Buffers, components},
-    animation::Place,
+    animation::{Place, check_count, not_in_order},
     json::{Animation, Document, Interpolation, Primitive},
     mesh::vectors,
 };
@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
     /// node has no targets.
     pub(super) fn track(
         &mut self,
-        animation: &Animation,
+        (animation, name): (&Animation, &str),
         sampler: usize,
         node: usize,
     ) -> Result<Option<(usize, usize)>, Problem> {
@@ -131,17 +131,10 @@ impl<'a> Reader<'a> {
         let times = read(sampler.input, "times of an animation")?;
         let values = read(sampler.output, "weights of an animation")?;
         let interpolation = sampler.interpolation;
-        let per_key = if interpolation == Interpolation::CubicSpline { 3 * targets } else { targets };
-        if times.is_empty() || times.len().checked_mul(per_key) != Some(values.len()) {
-            let text = format!(
-                "an animation has {} keys of {targets} morph targets but {} weights",
-                times.len(),
-                values.len()
-            );
-            return Err(Problem::whole(text));
-        }
+        let what = format!("weights of {targets} morph targets");
+        check_count(name, interpolation, times.len(), (values.len(), targets), &what)?;
         if !times.iter().chain(&values).all(|x| x.is_finite()) || !times.is_sorted() {
-            return Err(Problem::whole("the keys of an animation are not finite, or not in order of time"));
+            return Err(not_in_order(name));
         }
         self.morphs.keys.push(Keys { interpolation, times, values, targets });
         self.read.insert(key, self.morphs.keys.len() - 1);

@@ -78,8 +78,23 @@ impl Skeleton {
             reached,
             world: Vec::new(),
         };
+        notes.extend(skeleton.flattened());
         skeleton.bind(document, buffers, notes)?;
         Ok(skeleton)
+    }
+
+    /// Returns a note about the joints that the file scales to 0, if there are any.
+    fn flattened(&self) -> Option<String> {
+        let mut flat = self.joints.iter().filter(|joint| joint.rest.scale.abs().min_element() == 0.0);
+        let first = flat.next()?;
+        let more = match flat.count() {
+            0 => String::new(),
+            n => format!(" and {n} more"),
+        };
+        Some(format!(
+            "the joint {:?}{more} has a scale of 0, so that what it moves has no size; scale or delete it in the modeling program",
+            first.name
+        ))
     }
 
     /// Whether `node` is part of the scene.
@@ -281,7 +296,15 @@ pub(super) fn walk(
             *parents.get_mut(*c).ok_or_else(|| missing(*c))? = Some(n);
         }
     }
-    let scene = document.scene.and_then(|s| document.scenes.get(s)).or(document.scenes.first());
+    let scene = match document.scene {
+        Some(scene) => Some(document.scenes.get(scene).ok_or_else(|| {
+            let scenes = document.scenes.len();
+            Problem::whole(format!(
+                "the default scene is {scene}, but the file has {scenes} scenes; export it again"
+            ))
+        })?),
+        None => document.scenes.first(),
+    };
     let listed = scene.map_or(&[][..], |scene| &scene.nodes);
     if let Some(n) = listed.iter().find(|n| **n >= count) {
         return Err(missing(*n));
@@ -345,12 +368,22 @@ fn needed(document: &Document, parents: &[Option<usize>], reached: &[bool]) -> R
     Ok(needed)
 }
 
+/// Largest difference of a matrix from that of its scale, rotation and translation, over its largest scale [1].
+const SHEAR: f32 = 1e-3;
+
 /// The local transform of node `index`.
 pub(super) fn local(node: &json::Node, index: usize) -> Result<Trs, Problem> {
     let trs = match &node.matrix {
         Some(matrix) => {
-            let (scale, rotation, translation) =
-                Mat4::from_cols_array(matrix).to_scale_rotation_translation();
+            let matrix = Mat4::from_cols_array(matrix);
+            let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
+            let without = Mat4::from_scale_rotation_translation(scale, rotation, translation);
+            let most = SHEAR * scale.abs().max_element();
+            if without.is_finite() && !without.abs_diff_eq(matrix, most) {
+                return Err(Problem::whole(format!(
+                    "the matrix of node {index} has shear, but a node is read as scale, rotation and translation; export without shear"
+                )));
+            }
             Trs { translation, rotation, scale }
         }
         None => Trs {

@@ -116,7 +116,7 @@ pub(super) fn ranges(text: &str, scene: &SceneFile) -> Result<(), Problem> {
     for groom in &scene.groom {
         let from = line_at(text, groom.start());
         first_failure(text, from, &[GroomFile::check("scale", &groom.scale)])?;
-        first_failure(text, from, &placement(&groom.transform))?;
+        placement(text, from, &groom.transform)?;
         in_range(text, from, &groom.look)?;
         in_range(text, from, &groom.effects)?;
         in_range(text, from, &groom.thicken)?;
@@ -183,14 +183,16 @@ pub(super) fn without_sheet_fields(body: &BodyFile) -> [Check; 2] {
     ]
 }
 
-/// Checks the position, rotation and scale of a groom or a mesh.
-pub(super) fn placement(t: &Placement) -> [Check; 3] {
+/// Checks the `transform` of a groom or a mesh, whose table has line `from`.
+fn placement(text: &str, from: usize, t: &Placement) -> Result<(), Problem> {
     let not_0 = t.scale.is_finite() && t.scale.abs().min_element() > 0.0;
-    [
+    let checks = vec![
         Placement::check("position", &t.position),
         Placement::check("rotation", &t.rotation),
         Check { holds: not_0, ..Placement::check("scale", &t.scale) },
-    ]
+    ];
+    let checks: Vec<Check> = with_prefix("transform", checks).collect();
+    first_failure(text, from, &checks)
 }
 
 pub(super) fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
@@ -202,7 +204,7 @@ pub(super) fn body_ranges(text: &str, body: &BodyFile) -> Result<(), Problem> {
     let from = line_at(text, body.file.span().start);
     first_failure(text, from, &checks)?;
     if let Some(transform) = &body.transform {
-        first_failure(text, from, &placement(transform))?;
+        placement(text, from, transform)?;
     }
     body.more.iter().try_for_each(|file| body_ranges(text, file))
 }

@@ -120,7 +120,7 @@ define_settings! {
         /// are those of the scalp seen from above: the crown is the middle, the face is below, and her left is on the
         /// right.
         #[serde(default)]
-        maps: MapsFile, "none", {text "the fields of `groom.maps` without `comb`"}, default "none";
+        maps: MapsFile, "none", {text "the fields of `groom.maps` without `comb` and `vertex_colors`"}, default "none";
     }
 }
 

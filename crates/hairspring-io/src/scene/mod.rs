@@ -130,14 +130,19 @@ impl<'a> Reader<'a> {
         self.path.parent().unwrap_or(Path::new("")).join(name.get_ref())
     }
 
-    /// Returns a reader's result for the file `name`. If the file is missing, the error says what refers to
-    /// it.
+    /// Returns a reader's result for the file `name`. If the file is missing or of another kind, the error says what
+    /// refers to it.
     fn named<T>(&self, result: Result<T>, name: &FileName, what: &str) -> Result<T> {
+        let line = line_at(self.text, name.span().start);
         result.map_err(|error| match error {
             Error::NotFound { path, .. } => {
-                let line = line_at(self.text, name.span().start);
                 let why = format!("; {}, line {line}, names it as the {what}", self.path.display());
                 Error::NotFound { path, why }
+            }
+            // The content of the scene is wrong.
+            Error::Unsupported { reason, .. } => {
+                let file = name.get_ref().display();
+                Problem::line(line, format!("the {what} \"{file}\": {reason}")).in_file(self.path)
             }
             other => other,
         })

@@ -67,7 +67,10 @@ fn key_of(text: &str, at: usize) -> Option<&str> {
 /// if it is in an inline table, the line of that table. Without such a line, the first one after the table.
 pub(super) fn line_of_setting(text: &str, from: usize, path: &str) -> Option<usize> {
     let lines: Vec<&str> = text.lines().collect();
-    let table = lines.iter().take(from).rev().find_map(|line| header_of(line)).unwrap_or_default();
+    let header = lines.iter().take(from).rposition(|line| header_of(line).is_some());
+    let table = header.and_then(|k| header_of(lines[k])).unwrap_or_default();
+    // The keys of a table are in any order.
+    let first = header.map_or(from, |k| k + 1);
     let inside = format!("{table}.");
     let leaves = |line: &&str| {
         header_of(line).is_some_and(|name| line.trim_start().starts_with("[[") || !name.starts_with(&inside))
@@ -79,11 +82,11 @@ pub(super) fn line_of_setting(text: &str, from: usize, path: &str) -> Option<usi
         let (parent, key) = path.rsplit_once('.')?;
         let parent = format!(".{parent}");
         let opens = |line: &&str| header_of(line).is_some_and(|name| name.ends_with(&parent));
-        let k = lines[..end].iter().skip(from).position(opens)?;
-        line_of_key(&own, from + k + 1, key)
+        let k = lines[..end].iter().skip(first).position(opens)?;
+        line_of_key(&own, first + k + 1, key)
     };
     below_header()
-        .or_else(|| prefixes(path).find_map(|path| line_of_key(&own, from, path)))
+        .or_else(|| prefixes(path).find_map(|path| line_of_key(&own, first, path)))
         .or_else(|| line_of_key(text, from, path))
 }
 
@@ -149,9 +152,32 @@ fn reworded(message: &str, key: Option<&str>) -> String {
     });
     match wrong {
         Some((true, count, expected)) => format!("{field} needs {}, not {count} values", needed(expected)),
-        Some((false, found, expected)) => format!("{field} needs {}, not {}", needed(expected), value(found)),
+        Some((false, found, expected)) => match largest(expected).filter(|_| is_above(found, expected)) {
+            Some(most) => format!("{field} needs a whole number of at most {most}, not {}", value(found)),
+            None => format!("{field} needs {}, not {}", needed(expected), value(found)),
+        },
         None => message.to_owned(),
     }
+}
+
+/// The largest value of a type of whole numbers. Those of TOML have 64 bits.
+fn largest(expected: &str) -> Option<i128> {
+    Some(match expected {
+        "u8" => u8::MAX.into(),
+        "u16" => u16::MAX.into(),
+        "u32" => u32::MAX.into(),
+        "i8" => i8::MAX.into(),
+        "i16" => i16::MAX.into(),
+        "i32" => i32::MAX.into(),
+        "u64" | "usize" | "i64" | "isize" => i64::MAX.into(),
+        _ => return None,
+    })
+}
+
+/// Whether serde found a whole number above the largest value of the type that it expected.
+fn is_above(found: &str, expected: &str) -> bool {
+    let number = found.strip_prefix("integer ").and_then(|_| value(found).parse::<i128>().ok());
+    number.zip(largest(expected)).is_some_and(|(number, most)| number > most)
 }
 
 /// Describes the type that serde expected.
@@ -181,7 +207,7 @@ fn needed(expected: &str) -> String {
 
 /// Describes the value that serde found.
 fn value(found: &str) -> String {
-    let quoted = |start: &str| Some(found.strip_prefix(start)?.trim_matches('`').to_owned());
+    let quoted = |start: &str| Some(found.strip_prefix(start)?.split('`').nth(1)?.to_owned());
     match found {
         "map" => "a table".into(),
         "sequence" => "a list".into(),

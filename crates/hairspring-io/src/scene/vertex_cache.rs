@@ -57,7 +57,7 @@ impl Reader<'_> {
             let mut scale = named.scale;
             let mut frames: Vec<Vec<Vec3>> = Vec::with_capacity(files.len());
             for (_, file) in &files {
-                let mut read = read_body(file, &options)?.value.body.mesh;
+                let mut read = self.named(read_body(file, &options), cache, "vertex cache")?.value.body.mesh;
                 if read.positions.len() != vertices {
                     let text = format!(
                         "{} has {} vertices, and the body has {vertices}: export the meshes without changes of topology",

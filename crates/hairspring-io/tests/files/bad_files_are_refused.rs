@@ -8,7 +8,8 @@
 
 use glam::Vec3;
 use hairspring_io::{
-    ErrorKind, Place, Problem, ReadOptions, Strands, read_body, read_groom, read_motion, write_strands,
+    ErrorKind, Place, Problem, ReadOptions, Strands, pc2, read_body, read_groom, read_motion, read_scene,
+    write_strands,
 };
 use proptest::prelude::*;
 use rayon::prelude::*;
@@ -146,6 +147,14 @@ fn the_error_has_file_place_and_remedy() {
     let error = read_motion(&path("c.bvh"), None, &options).unwrap_err();
     assert!(error.to_string().contains("c.bvh, line 7"), "{error}");
 
+    let comma = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 1,5 0\n";
+    fs::write(path("e.bvh"), comma).unwrap();
+    let error = read_motion(&path("e.bvh"), None, &options).unwrap_err();
+    assert!(
+        error.to_string().contains("line 4: expected an offset, found `1,5`; use decimal points"),
+        "{error}"
+    );
+
     fs::write(path("d.tfx"), 9f32.to_le_bytes()).unwrap();
     let error = read_groom(&path("d.tfx"), &options).unwrap_err();
     assert!(error.to_string().contains(".tfx version 9 is not supported"), "{error}");
@@ -161,6 +170,38 @@ fn the_error_has_file_place_and_remedy() {
     assert_eq!(read_groom(&path("a.hair"), &wrong).unwrap_err().kind(), ErrorKind::Unsupported);
     fs::create_dir(path("folder.hair")).unwrap();
     assert_eq!(read_groom(&path("folder.hair"), &options).unwrap_err().kind(), ErrorKind::Unreadable);
+}
+
+#[test]
+fn a_point_cache_without_samples_or_with_a_broken_one_is_refused() {
+    let cache = |samples: &[f32]| {
+        let mut file = b"POINTCACHE2\0".to_vec();
+        file.extend([1i32, 4].map(i32::to_le_bytes).concat());
+        file.extend([0f32, 1.0].map(f32::to_le_bytes).concat());
+        file.extend((samples.len() as i32 / 12).to_le_bytes());
+        file.extend(samples.iter().flat_map(|x| x.to_le_bytes()));
+        file
+    };
+    let mut samples = [0.5; 36];
+    assert!(pc2::parse(&cache(&samples)).is_ok());
+    samples[12 + 3 * 2] = f32::NAN;
+    let broken = cache(&samples);
+    let text = pc2::parse(&broken).unwrap_err().text;
+    assert!(text.starts_with("vertex 2 of sample 1 is not finite"), "{text}");
+    let text = pc2::parse(&cache(&[])).unwrap_err().text;
+    assert!(text.starts_with("the file has no samples"), "{text}");
+    // A scene names the file.
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("a.pc2"), broken).unwrap();
+    fs::write(path("a.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        .unwrap();
+    fs::write(path("a.csv"), "strand,x,y,z\n0,0,1,0\n0,0,1.1,0\n").unwrap();
+    let scene = "[body]\nfile = \"a.obj\"\nvertex_cache = \"a.pc2\"\n[[groom]]\nfile = \"a.csv\"\n";
+    fs::write(path("a.toml"), scene).unwrap();
+    let error = read_scene(&path("a.toml")).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Malformed);
+    assert!(error.to_string().contains("a.pc2: vertex 2 of sample 1"), "{error}");
 }
 
 #[test]

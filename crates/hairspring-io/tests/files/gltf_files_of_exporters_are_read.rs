@@ -9,16 +9,16 @@ use hairspring_io::{Character, Problem, ReadOptions, gltf, read_body, read_motio
 use serde_json::json;
 use std::{cell::RefCell, fs};
 
-fn read(file: &GltfFile) -> (Character, Vec<String>) {
+pub(crate) fn read(file: &GltfFile) -> (Character, Vec<String>) {
     gltf::parse(&file.glb(), &|_| None).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn refused(file: &GltfFile) -> Problem {
+pub(crate) fn refused(file: &GltfFile) -> Problem {
     gltf::parse(&file.glb(), &|_| None).unwrap_err()
 }
 
 /// Reads a file that must give the tetrahedron, and returns its notes.
-fn read_tetrahedron(file: &GltfFile) -> Vec<String> {
+pub(crate) fn read_tetrahedron(file: &GltfFile) -> Vec<String> {
     let (character, notes) = read(file);
     let mesh = &character.body.mesh;
     assert_eq!(mesh.positions, TETRAHEDRON.map(Vec3::from));
@@ -28,7 +28,7 @@ fn read_tetrahedron(file: &GltfFile) -> Vec<String> {
 }
 
 /// There is one note with each of `texts`.
-fn assert_noted_once(notes: &[String], texts: &[&str]) {
+pub(crate) fn assert_noted_once(notes: &[String], texts: &[&str]) {
     for text in texts {
         assert_eq!(notes.iter().filter(|n| n.contains(text)).count(), 1, "{text:?}: {notes:?}");
     }
@@ -321,14 +321,14 @@ fn sparse_accessors_are_read() {
 }
 
 /// Adds a skin of the nodes `joints` with these inverse bind matrices.
-fn skin(file: &mut GltfFile, joints: &[usize], binds: &[Affine3A]) -> usize {
+pub(crate) fn skin(file: &mut GltfFile, joints: &[usize], binds: &[Affine3A]) -> usize {
     let matrices: Vec<f32> = binds.iter().flat_map(|b| glam::Mat4::from(*b).to_cols_array()).collect();
     let matrices = file.floats("MAT4", &matrices);
     file.push("skins", json!({"joints": joints, "inverseBindMatrices": matrices}))
 }
 
 /// Adds accessors of joints and weights of four vertices.
-fn weights(file: &mut GltfFile, joints: [[u8; 4]; 4], weights: [[f32; 4]; 4]) -> (usize, usize) {
+pub(crate) fn weights(file: &mut GltfFile, joints: [[u8; 4]; 4], weights: [[f32; 4]; 4]) -> (usize, usize) {
     (file.bytes(5121, "VEC4", 4, joints.as_flattened()), file.floats("VEC4", weights.as_flattened()))
 }
 

@@ -5,8 +5,8 @@ use crate::{
     gltf_file::GltfFile,
     samples::{glb, glb_strands},
 };
-use glam::Vec3;
-use hairspring_io::{Format, ReadOptions, gltf, holds_only_curves, read_groom, read_scene};
+use glam::{Vec2, Vec3};
+use hairspring_io::{Format, ReadOptions, gltf, holds_only_curves, read_body, read_groom, read_scene};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -215,4 +215,44 @@ fn a_file_with_curves_only_is_recognized() {
     assert!(!holds("mesh.obj", b"v 0 0 0\nv 0 1 0\nv 1 0 0\nf 1 2 3\nl 1 2\n"));
     assert!(!holds("hair.csv", b"0,0,0,0\n0,0,1,0\n"), "the format has no meshes");
     assert!(!holds_only_curves(&folder.path().join("missing.glb")));
+}
+
+#[test]
+fn texture_coordinates_of_the_first_point_are_those_of_the_root() {
+    let file = |all: bool| {
+        lines(2, |file, positions| {
+            let uvs = file.floats("VEC2", &[0.25, 0.125, 0.5, 0.5]);
+            let mapped = json!({"mode": 3, "attributes": {"POSITION": positions, "TEXCOORD_0": uvs}});
+            let other = json!({"mode": 3, "attributes": {"POSITION": positions}});
+            json!([mapped, if all { &mapped } else { &other }])
+        })
+    };
+    let (groom, notes) = read("a.glb", &file(true).glb());
+    assert_eq!((groom.root_uvs, notes), (vec![Vec2::new(0.25, 0.875); 2], vec![]));
+    let (groom, notes) = read("a.glb", &file(false).glb());
+    assert_eq!(groom.root_uvs, [Vec2::new(0.25, 0.875), Vec2::ZERO]);
+    assert!(notes.len() == 1 && notes[0].starts_with("1 strands have no TEXCOORD_0"), "{notes:?}");
+}
+
+#[test]
+fn what_is_wrong_with_lines_is_said_where_a_body_is_read_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.glb");
+    let body_error = |file: &GltfFile| {
+        fs::write(&path, file.glb()).unwrap();
+        read_body(&path, &ReadOptions::default()).unwrap_err().to_string()
+    };
+    let strip = |index: u8| {
+        lines(2, |file, positions| {
+            let indices = file.bytes(5121, "SCALAR", 2, &[0, index]);
+            json!([{"mode": 3, "attributes": {"POSITION": positions}, "indices": indices}])
+        })
+    };
+    assert!(body_error(&strip(1)).contains("lines but no triangles, so it is no body; name it as a groom"));
+    assert!(body_error(&strip(7)).contains("a line names vertex 7 of an object of 2"));
+    let wrong = lines(
+        2,
+        |_, positions| json!([{"mode": 3, "attributes": {"POSITION": positions, "_RADIUS": positions}}]),
+    );
+    assert!(body_error(&wrong).contains("the radii (accessor 0) should have 1 components each"));
 }

@@ -45,3 +45,50 @@ fn a_joint_that_is_scaled_to_nothing_keeps_its_scale() {
     let notes = notes.join("\n");
     assert!(notes.contains("scales the joint \"Head\" to 0 at 0.50 s"), "{notes}");
 }
+
+/// A tetrahedron with rotations of its node `Head` at 0, 1, 2, … s.
+fn turning(interpolation: &str, keys: u8, values: &[[f32; 4]]) -> GltfFile {
+    let mut file = GltfFile::tetrahedron();
+    let times: Vec<f32> = (0..keys).map(f32::from).collect();
+    let (input, output) = (file.floats("SCALAR", &times), file.floats("VEC4", values.as_flattened()));
+    let animation = json!({
+        "name": "turn",
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}],
+        "samplers": [{"input": input, "output": output, "interpolation": interpolation}],
+    });
+    file.push("animations", animation);
+    file
+}
+
+#[test]
+fn rotations_of_zero_length_are_the_key_before_and_noted() {
+    let (half, none) =
+        ([0.0, std::f32::consts::FRAC_1_SQRT_2, 0.0, std::f32::consts::FRAC_1_SQRT_2], [0.0; 4]);
+    let one = [0.0, 0.0, 0.0, 1.0];
+    for (interpolation, values) in [
+        ("LINEAR", vec![half, none, one]),
+        ("STEP", vec![half, none, one]),
+        ("CUBICSPLINE", vec![none, half, none, none, none, none, none, one, none]),
+    ] {
+        let (character, notes) = gltf::parse(&turning(interpolation, 3, &values).glb(), &|_| None).unwrap();
+        assert_eq!(notes.len(), 1, "{interpolation}: {notes:?}");
+        assert!(notes[0].starts_with("1 keys of rotations are 0, 0, 0, 0"), "{notes:?}");
+        let clip = &character.clips[0];
+        for time in [0.5, 1.0] {
+            let rotation = clip.sample(time)[0].rotation;
+            assert!(rotation.abs_diff_eq(glam::Quat::from_array(half), 1e-5), "{interpolation}: {rotation}");
+        }
+    }
+}
+
+#[test]
+fn a_wrong_number_of_values_names_the_animation_and_the_right_one() {
+    let one = [0.0, 0.0, 0.0, 1.0];
+    for (interpolation, wanted) in [
+        ("LINEAR", "animation \"turn\" has 2 keys but 4 values: expected 1 per key"),
+        ("CUBICSPLINE", "animation \"turn\" has 2 keys but 4 values of a CUBICSPLINE: expected 3 per key"),
+    ] {
+        let text = gltf::parse(&turning(interpolation, 2, &[one; 4]).glb(), &|_| None).unwrap_err().text;
+        assert!(text.starts_with(wanted), "{text}");
+    }
+}

@@ -7,7 +7,8 @@
 use glam::{Vec2, Vec3};
 use hairspring::groom::{DEFAULT_RADIUS, Groom};
 use hairspring_io::{
-    Axis, ErrorKind, ReadOptions, Strands, hair, read_groom, tfx, usc, write_groom, write_strands,
+    Axis, ErrorKind, FrameWriter, ReadOptions, Strands, hair, read_groom, tfx, usc, write_groom,
+    write_strands,
 };
 use proptest::prelude::*;
 use std::fs;
@@ -121,6 +122,25 @@ fn unsupported_data_is_refused_or_reported() {
     // The refused writes leave no files.
     let names: Vec<_> = fs::read_dir(folder.path()).unwrap().map(|f| f.unwrap().file_name()).collect();
     assert_eq!(names, ["b.data"]);
+}
+
+#[test]
+fn only_what_a_groom_has_is_reported_as_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let line = [0.0, 0.1, 0.2].map(|y| Vec3::Y * y);
+    // A reader gives a .data file the default radius.
+    let plain = Groom::from_strands([line], DEFAULT_RADIUS);
+    assert_eq!(write_groom(&folder.path().join("a.data"), &plain).unwrap(), Vec::<String>::new());
+    let mut mapped = plain.clone();
+    (mapped.root_uvs, mapped.colors) = (vec![Vec2::ZERO], vec![Vec3::X; 3]);
+    let left_out = |name: &str| {
+        FrameWriter::new(name.as_ref(), [&mapped, &plain].map(Strands::from).into_iter()).unwrap().1
+    };
+    assert_eq!(left_out("a.hair"), ["only 1 of 2 grooms have colors; left out"]);
+    let both =
+        ["colors", "texture coordinates"].map(|what| format!("only 1 of 2 grooms have {what}; left out"));
+    assert_eq!(left_out("a.tfx"), both);
+    assert_eq!(left_out("a.data"), Vec::<String>::new());
 }
 
 #[test]

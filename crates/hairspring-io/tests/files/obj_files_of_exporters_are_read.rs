@@ -2,7 +2,7 @@
 //! Polygons that are not convex get triangles inside them, and polylines are strands. A file without faces is no body.
 
 use glam::Vec3;
-use hairspring::body::Mesh;
+use hairspring::{body::Mesh, groom::Groom};
 use hairspring_io::{ErrorKind, ReadOptions, obj, read_body, read_groom};
 use std::fs;
 
@@ -229,4 +229,63 @@ fn a_file_without_faces_is_no_body() {
         assert_eq!(error.kind(), ErrorKind::Malformed);
         assert!(error.to_string().contains("no face") || error.to_string().contains("line 2"), "{error}");
     }
+}
+
+/// Reads a groom from this text, in meters, and the notes that are not about repairs.
+fn groom(text: &str) -> (Groom, Vec<String>) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curves.obj");
+    fs::write(&path, text).unwrap();
+    let loaded = read_groom(&path, &ReadOptions { scale: Some(1.0), up: None }).unwrap();
+    let of_strands =
+        |note: &String| note.starts_with("repaired ") || note.contains(" joints bend by more than");
+    (loaded.value, loaded.notes.into_iter().filter(|note| !of_strands(note)).collect())
+}
+
+const POINTS: &str = "v 0 0 0\nv 0 0.1 0\nv 0 0.2 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0.1 0.2 0\n";
+
+#[test]
+fn names_are_groups_of_strands() {
+    let names = |groom: &Groom| groom.group_names.join(", ");
+    let (named, notes) =
+        groom(&format!("{POINTS}o fringe\nl 1 2 3\no back\ng back of head\nl 4 5 6\no fringe\nl 3 2 1\n"));
+    assert_eq!((&named.groups[..], &*names(&named), notes), (&[0, 1, 0][..], "fringe, back of head", vec![]));
+    // Polylines before the first name have a group without one.
+    let (some, _) = groom(&format!("{POINTS}l 1 2 3\ng back\nl 4 5 6\n"));
+    assert_eq!((&some.groups[..], &*names(&some)), (&[0, 1][..], ", back"));
+    let (none, _) = groom(&format!("{POINTS}l 1 2 3\nl 4 5 6\n"));
+    assert!(none.groups.is_empty() && none.group_names.is_empty());
+    // A name for each of many polylines is that of a strand.
+    let line = |k: usize| format!("o Curve.{k:03}\nl 1 2 3\n");
+    let (curves, notes) = groom(&format!("{POINTS}{}", (0..64).map(line).collect::<String>()));
+    assert!(curves.strand_count() == 64 && curves.groups.is_empty());
+    assert_eq!(notes, ["each polyline has its own name, so names are not used as groups"]);
+    // Segments are joined within their group.
+    for lines in ["g a\nl 2 3\nl 1 2\ng b\nl 5 6\nl 4 5\n", "g a\nl 1 2\nl 2 3\ng b\nl 3 4\nl 4 5\n"] {
+        let (joined, _) = groom(&format!("{POINTS}{lines}"));
+        assert_eq!((&joined.groups[..], &joined.offsets[..]), (&[0, 1][..], &[0, 3, 6][..]), "{lines}");
+    }
+}
+
+#[test]
+fn closed_polylines_and_roots_without_texture_coordinates_are_noted() {
+    for lines in ["l 1 2 4 1\n", "l 1 2\nl 2 4\nl 4 1\n"] {
+        let (closed, notes) = groom(&format!("{POINTS}{lines}"));
+        assert_eq!((closed.strand_count(), closed.point_count()), (1, 4));
+        assert_eq!(notes, ["1 closed polylines are opened at their first point, which is the root"]);
+    }
+    let (_, notes) = groom(&format!("{POINTS}vt 0.5 0.5\nl 1/1 2 3\nl 4 5 6\n"));
+    assert_eq!(notes, ["1 strands have no texture coordinates and get 0, 0; give each root one"]);
+}
+
+#[test]
+fn what_is_wrong_with_polylines_is_said_where_a_body_is_read_too() {
+    let text = obj::parse(format!("{POINTS}l 1 9\n").as_bytes()).unwrap_err().to_string();
+    assert!(text.starts_with("line 7: the face or line names vertex 9"), "{text}");
+}
+
+#[test]
+fn decimal_commas_are_refused_with_their_remedy() {
+    let text = obj::parse(b"v 0,000 1,5 0\n").unwrap_err().to_string();
+    assert_eq!(text, "line 1: expected a vertex of 3 numbers, found `0,000`; use decimal points");
 }

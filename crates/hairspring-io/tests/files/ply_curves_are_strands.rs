@@ -3,6 +3,7 @@
 
 use crate::samples::{PLY_IDS, PLY_LISTS, ply_edges};
 use glam::Vec3;
+use hairspring::groom::DEFAULT_RADIUS;
 use hairspring_io::{Format, ReadOptions, ply, read_groom};
 use std::fs;
 
@@ -176,4 +177,29 @@ fn large_counts_and_lines_of_a_header_use_no_memory() {
     assert!(error(&header(&long)).contains("cut short"));
     let comments = "comment\n".repeat(1 << 20);
     assert!(error(&header(&comments)).contains("within the limit of 65536 bytes"));
+}
+
+#[test]
+fn radii_that_are_not_above_0_are_repaired_and_counted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.ply");
+    let read = |radii: [&str; 3]| {
+        let points: String = radii.iter().enumerate().map(|(x, r)| format!("0.{x} 0 0 {r}\n")).collect();
+        let file = format!(
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             property float radius\nelement edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n\
+             {points}0 1\n1 2\n"
+        );
+        fs::write(&path, file).unwrap();
+        let loaded = read_groom(&path, &ReadOptions { scale: Some(1.0), up: None }).unwrap();
+        (loaded.value.radii, loaded.repairs.bad_radii, loaded.notes)
+    };
+    assert_eq!(read(["-0.1", "-0.1", "-0.1"]).1, 3);
+    assert_eq!(
+        read(["0", "0", "0"]),
+        (vec![DEFAULT_RADIUS; 3], 3, vec!["repaired 3 radii that were not above 0".into()])
+    );
+    let (radii, repaired, notes) = read(["-0.1", "-0.1", "0.00005"]);
+    assert_eq!((radii, repaired), (vec![0.00005; 3], 2));
+    assert_eq!(notes, ["repaired 2 radii that were not above 0"]);
 }

@@ -173,7 +173,7 @@ fn a_mesh_without_joints_is_placed_by_its_transform() {
     let normal = mesh.normals[mesh.triangles[mesh.triangles.len() - 1][0] as usize];
     assert!((b - a).cross(c - a).dot(normal) > 0.0, "the triangles of a mirrored mesh face inward");
     let wrong = message(&format!("{body}transform.scale = 0\n{groom}"));
-    assert!(wrong.contains("`scale` must be finite and not 0"), "{wrong}");
+    assert!(wrong.contains("line 5: `transform.scale` must be finite and not 0"), "{wrong}");
 }
 
 #[test]

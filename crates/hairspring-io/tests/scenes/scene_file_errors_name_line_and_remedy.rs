@@ -242,6 +242,38 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
             ),
             &["line 7", "`global_shape.damping` must be 0 to 10"],
         ),
+        // A key with the same name as one of the table around its own.
+        (
+            format!(
+                "{GROOM}scale = 1.0\nup = \"y\"\n\n[groom.transform]\nposition = [0, 0, 0]\nscale = [1, 0, 1]\n"
+            ),
+            &["line 8", "`transform.scale` must be finite and not 0"],
+        ),
+        (
+            "[[groom]]\ntransform.scale = 0\nfile = \"hair.data\"\nscale = 1\n".into(),
+            &["line 2", "`transform.scale` must be finite and not 0"],
+        ),
+        (
+            format!("{GROOM}scale = 1.0\ntransform = {{ rotation = [nan, 0, 0] }}\n"),
+            &["line 4", "`transform.rotation` must be"],
+        ),
+        ("[[groom]]\nscale = -1\nfile = \"hair.data\"\n".into(), &["line 2", "`scale` must be above 0"]),
+        // A file of an unknown kind.
+        (
+            "[[groom]]\nfile = \"x.xyz\"\n".into(),
+            &[
+                "scene.toml, line 2",
+                "the groom \"x.xyz\": unknown extension",
+                ".gltf, .glb, .vrm",
+                ".usdz, .abc",
+            ],
+        ),
+        ("[[groom]]\nfile = \"\"\n".into(), &["scene.toml, line 2", "the groom \"\": unknown extension"]),
+        ("[[groom]]\nfile = \"scene.toml\"\n".into(), &["scene.toml, line 2", "the groom \"scene.toml\""]),
+        (
+            format!("[body]\nfile = \"hair.data\"\n{GROOM}"),
+            &["scene.toml, line 2", "the body \"hair.data\"", ".gltf, .glb, .vrm, .obj"],
+        ),
         ("name = \"empty\"\n".into(), &["scene.toml", "[[groom]]"]),
         ("gravity = [0, 1\n".into(), &["line 1"]),
     ] {
@@ -277,6 +309,11 @@ fn values_of_the_wrong_type_are_described_in_toml() {
             &["line 4", "`substeps` needs a whole number, 0 or more, not -4"],
         ),
         ("[solver]\nsubsteps = \"4\"\n".into(), &["line 4", "`substeps` needs a whole number"]),
+        (
+            "[solver]\nsubsteps = 99999999999999999999\n".into(),
+            &["line 4", "`substeps` needs a whole number of at most 4294967295, not 99999999999999999999"],
+        ),
+        ("[solver]\nsubsteps = 5000000000\n".into(), &["line 4", "at most 4294967295, not 5000000000"]),
         ("[solver]\nsag_free = 1\n".into(), &["line 4", "`sag_free` needs true or false, not 1"]),
         ("[volume]\nmethod = 3\n".into(), &["line 4", "`method` needs a name in quotes"]),
         ("thicken = 3\n".into(), &["line 3", "`thicken` needs a table"]),
@@ -320,6 +357,7 @@ fn values_of_the_wrong_type_are_described_in_toml() {
             "f32",
             "u32",
             "i64",
+            "i128",
             "struct",
             "sequence",
             "integer",
@@ -343,6 +381,9 @@ fn missing_and_broken_files_differ_in_kind() {
     assert_eq!(kind("broken.data"), ErrorKind::Malformed);
     // An OBJ may hold strands, but this one has only faces.
     assert_eq!(kind("head.obj"), ErrorKind::Malformed);
-    assert_eq!(kind("nod.bvh"), ErrorKind::Unsupported);
+    // Of another kind, so that the scene is wrong, even if it names itself.
+    for file in ["nod.bvh", "scene.toml", "x.xyz", ""] {
+        assert_eq!(kind(file), ErrorKind::Malformed, "{file:?}");
+    }
     assert_eq!(read_scene(&folder.path().join("no.toml")).unwrap_err().kind(), ErrorKind::NotFound);
 }

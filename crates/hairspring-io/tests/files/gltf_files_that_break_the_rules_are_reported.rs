@@ -1,0 +1,92 @@
+//! Promise: a glTF file that violates the specification is refused, or read with a note, in a sentence that names the
+//! object and the remedy.
+
+use crate::{
+    gltf_file::{GltfFile, TETRAHEDRON},
+    gltf_files_of_exporters_are_read::{assert_noted_once, read, read_tetrahedron, refused, skin, weights},
+};
+use glam::{Affine3A, Quat, Vec3};
+use serde_json::json;
+
+#[test]
+fn a_version_that_the_file_needs_is_refused_above_2_0() {
+    let mut file = GltfFile::tetrahedron();
+    for version in ["1.0", "2.0"] {
+        file.json["asset"]["minVersion"] = json!(version);
+        assert!(read_tetrahedron(&file).is_empty());
+    }
+    file.json["asset"] = json!({"version": "2.1", "minVersion": "2.1"});
+    assert!(refused(&file).text.contains("glTF \"2.1\" (asset.minVersion)"), "{}", refused(&file));
+}
+
+#[test]
+fn a_default_scene_that_does_not_exist_is_refused() {
+    let mut file = GltfFile::tetrahedron();
+    file.json["scene"] = json!(3);
+    assert!(
+        refused(&file).text.contains("the default scene is 3, but the file has 1 scenes"),
+        "{}",
+        refused(&file)
+    );
+}
+
+#[test]
+fn a_matrix_with_shear_is_refused_and_another_is_read() {
+    let mut file = GltfFile::tetrahedron();
+    let turned = Affine3A::from_scale_rotation_translation(
+        Vec3::new(2.0, 0.5, -1.0),
+        Quat::from_rotation_y(0.7) * Quat::from_rotation_x(1.1),
+        Vec3::new(3.0, -2.0, 1.0),
+    );
+    file.json["nodes"][0]["matrix"] = json!(glam::Mat4::from(turned).to_cols_array());
+    let positions = read(&file).0.body.mesh.positions;
+    for (p, corner) in positions.iter().zip(TETRAHEDRON) {
+        assert!(p.distance(turned.transform_point3(corner.into())) < 1e-5, "{p}");
+    }
+    let mut sheared = glam::Mat4::IDENTITY.to_cols_array();
+    sheared[4] = 0.5;
+    file.json["nodes"][0]["matrix"] = json!(sheared);
+    assert!(refused(&file).text.contains("the matrix of node 0 has shear"), "{}", refused(&file));
+}
+
+#[test]
+fn a_body_that_is_scaled_to_nothing_is_noted() {
+    let mut file = GltfFile::tetrahedron();
+    file.json["nodes"][0]["scale"] = json!([1.0, 0.0, 1.0]);
+    assert_noted_once(&read(&file).1, &["the joint \"Head\" has a scale of 0"]);
+}
+
+#[test]
+fn a_wrong_stride_is_named() {
+    for (stride, wrong) in [(8, true), (13, true), (12, false)] {
+        let mut file = GltfFile::tetrahedron();
+        file.json["bufferViews"][0]["byteStride"] = json!(stride);
+        if wrong {
+            let text = refused(&file).text;
+            assert!(
+                text.contains(&format!("byteStride of {stride}, which must be a multiple of 4")),
+                "{text}"
+            );
+            assert!(text.contains("at least the 12 bytes") && !text.contains("cut short"), "{text}");
+        } else {
+            assert!(read_tetrahedron(&file).is_empty());
+        }
+    }
+}
+
+#[test]
+fn weights_that_are_no_weights_count_as_0_and_are_noted() {
+    let mut file = GltfFile::tetrahedron();
+    skin(&mut file, &[0], &[Affine3A::IDENTITY]);
+    file.json["nodes"][0]["skin"] = json!(0);
+    let one = [1.0, 0.0, 0.0, 0.0];
+    let wrong = [[1.0, -0.5, 0.0, 0.0], [1.0, f32::NAN, 0.0, 0.0], one, one];
+    let (j, w) = weights(&mut file, [[0; 4]; 4], wrong);
+    file.primitive()["attributes"]["JOINTS_0"] = json!(j);
+    file.primitive()["attributes"]["WEIGHTS_0"] = json!(w);
+    assert_noted_once(
+        &read_tetrahedron(&file),
+        &["2 vertices of skinned meshes have weights that are below 0"],
+    );
+    assert_eq!(read(&file).0.body.skin.unwrap().weights, [one; 4]);
+}
