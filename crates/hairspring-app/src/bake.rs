@@ -2,8 +2,8 @@
 //! its own, as `hairspring bake` does. Its manifest is the same, so that `hairspring bake --resume` continues a bake
 //! of the window if the scene is saved as it was baked.
 
-use crate::{AppError, destination::destination, document::Source, snapshot::StageSnapshot};
-use hairspring_io::{Format, FrameWriter, Manifest, Origin};
+use crate::{AppError, destination::destination, document::Source, snapshot::StageSnapshot, text::counted};
+use hairspring_io::{Format, FrameError, FrameWriter, Manifest, Origin};
 use hairspring_scene::stage::{FrameRate, Stage};
 use hairspring_view::sequence_path;
 use std::{
@@ -24,6 +24,19 @@ pub struct BakeRequest {
     pub frames: [u32; 2],
     /// Frames per second.
     pub rate: FrameRate,
+}
+
+impl BakeRequest {
+    /// The files that it writes.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        let [first, last] = self.frames;
+        (first..=last).map(|frame| self.file(frame))
+    }
+
+    /// The file of a frame.
+    fn file(&self, frame: u32) -> PathBuf {
+        sequence_path(&self.path, frame).unwrap_or_else(|| self.path.clone())
+    }
 }
 
 /// What the window and the thread of a bake share.
@@ -108,8 +121,9 @@ fn run(
     let BakeRequest { path, frames: [first, last], rate } = request;
     let (loaded, inputs) = source.load_and_record()?;
     let mut stage = Stage::new(loaded.value)?;
-    let (mut writer, mut notes) = FrameWriter::new(stage.strands().map(|s| s.groom.into()));
-    let file = |frame| sequence_path(path, frame).unwrap_or_else(|| path.clone());
+    let (mut writer, mut notes) =
+        FrameWriter::new(path, stage.strands().map(|s| s.groom.into())).map_err(failed)?;
+    let file = |frame| request.file(frame);
     let mut manifest = None;
     if sequence_path(path, 1).is_some() {
         let origin = Origin::new("bake", &[("fps", Some(rate.to_string()))], inputs);
@@ -124,8 +138,10 @@ fn run(
         if shared.cancelled.load(Relaxed) {
             manifest.as_mut().map_or(Ok(()), Manifest::write)?;
             return Ok(format!(
-                "the bake stopped after {} of {last} frames; {written} files are complete",
-                frame - 1
+                "the bake stopped after {} of {}; complete: {}",
+                frame - 1,
+                counted((*last).into(), "frame"),
+                counted(written, "file")
             ));
         }
         if frame > 1 {
@@ -133,9 +149,7 @@ fn run(
         }
         if frame >= *first {
             let file = file(frame);
-            writer
-                .write(&file, stage.time(), stage.strands().map(|s| s.points))
-                .map_err(|why| AppError::new(why.to_string()))?;
+            writer.write(&file, stage.time(), stage.strands().map(|s| s.points)).map_err(failed)?;
             manifest.as_mut().map_or(Ok(()), |manifest| manifest.finished(&file))?;
             written += 1;
         }
@@ -143,7 +157,7 @@ fn run(
         wake();
     }
     manifest.as_mut().map_or(Ok(()), Manifest::write)?;
-    notes.insert(0, format!("baked {}: {written} frames", path.display()));
+    notes.insert(0, format!("baked {}: {}", path.display(), counted(written, "frame")));
     Ok(notes.join("; "))
 }
 
@@ -153,10 +167,15 @@ fn run(
 /// Returns an error if the extension is that of no groom, or if the file cannot be written.
 pub fn export(path: &Path, stage: &StageSnapshot) -> Result<String, AppError> {
     let path = groom_path(path)?;
-    let (mut writer, mut notes) = FrameWriter::new(stage.still.grooms.iter().map(|groom| groom.strands()));
-    writer.write(&path, stage.time, stage.points()).map_err(|why| AppError::new(why.to_string()))?;
+    let (mut writer, mut notes) =
+        FrameWriter::new(&path, stage.still.grooms.iter().map(|groom| groom.strands())).map_err(failed)?;
+    writer.write(&path, stage.time, stage.points()).map_err(failed)?;
     notes.insert(0, format!("wrote {}", path.display()));
     Ok(notes.join("; "))
+}
+
+fn failed(why: FrameError) -> AppError {
+    AppError::new(why.to_string())
 }
 
 /// Resolves the path of a groom file to be written.

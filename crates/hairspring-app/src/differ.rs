@@ -1,9 +1,18 @@
 //! Lists the differences between two compared scenes, with the labels of the panel.
 
-use crate::{AppError, effective::effective, key::Key, parameter};
+use crate::{
+    AppError,
+    effective::effective,
+    key::{Key, written_name},
+    parameter,
+    text::shortened,
+};
 
 /// Maximum number of differences that are listed. The rest does not fit under a picture and is only counted.
 const MOST: usize = 3;
+
+/// Maximum length of a value in a caption [characters], of which lists of numbers have many.
+const LONGEST: usize = 60;
 
 /// A value that differs between two scenes.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +47,8 @@ pub fn captions_of(found: &[Difference]) -> [String; 2] {
     }
     let more = found.len().saturating_sub(MOST);
     std::array::from_fn(|side| {
-        let named = found.iter().take(MOST).map(|d| format!("{}: {}", d.label(), d.written()[side]));
+        let value = |d: &Difference| shortened(&d.written()[side], LONGEST).into_owned();
+        let named = found.iter().take(MOST).map(|d| format!("{}: {}", d.label(), value(d)));
         let mut text = named.collect::<Vec<_>>().join(", ");
         if more > 0 {
             text.push_str(&format!(", and {more} more"));
@@ -93,7 +103,8 @@ fn differences(
         (Some(Table(a)), Some(Table(b))) => {
             let names = a.keys().chain(b.keys().filter(|name| !a.contains_key(*name)));
             for name in names {
-                let key = if key.is_empty() { name.clone() } else { format!("{key}.{name}") };
+                let written = written_name(name);
+                let key = if key.is_empty() { written } else { format!("{key}.{written}") };
                 differences(&key, a.get(name), b.get(name), found);
             }
         }
@@ -150,6 +161,12 @@ mod tests {
         assert_eq!(named("a = 1", "a = 1"), ["the same settings"; 2]);
         let many = named("a = 1\nb = 1\nc = 1\nd = 1\ne = 1", "a = 2\nb = 2\nc = 2\nd = 2\ne = 2");
         assert_eq!(many[1], "a: 2, b: 2, c: 2, and 2 more");
+        let list = format!("a = [{}]", "1.5, ".repeat(100));
+        let [left, _] = named(&list, "a = []");
+        assert!(
+            left.starts_with("a: [1.5, 1.5") && left.ends_with('…') && left.chars().count() < 70,
+            "{left}"
+        );
     }
 
     #[test]

@@ -82,6 +82,14 @@ impl Key {
         key
     }
 
+    /// The name of the material that the key is in.
+    pub fn material(&self) -> Option<&str> {
+        match &self.0[..] {
+            [Step::Field(top), Step::Field(name), ..] if top == "material" => Some(name),
+            _ => None,
+        }
+    }
+
     /// Looks up the value in a table of effective values.
     pub fn look_up<'a>(&self, table: &'a toml::Table) -> Option<&'a toml::Value> {
         let Some((Step::Field(first), rest)) = self.0.split_first() else { return None };
@@ -141,27 +149,79 @@ fn write(table: &mut dyn TableLike, steps: &[Step], value: Option<Value>) -> boo
     }
 }
 
+/// A name as it is written in a key: in quotes, unless it consists of letters, digits, `_` and `-`.
+pub fn written_name(name: &str) -> String {
+    toml_edit::Key::new(name).to_string()
+}
+
+/// Splits text after the key at its start, which ends at white space outside quotes.
+pub fn split_key(text: &str) -> (&str, &str) {
+    let mut quote = None;
+    let mut escaped = false;
+    let end = text.find(|c: char| {
+        match quote {
+            Some('"') if escaped => escaped = false,
+            Some('"') if c == '\\' => escaped = true,
+            Some(open) if c == open => quote = None,
+            None if matches!(c, '"' | '\'') => quote = Some(c),
+            _ => {}
+        }
+        quote.is_none() && c.is_whitespace()
+    });
+    let (key, rest) = text.split_at(end.unwrap_or(text.len()));
+    (key, rest.trim_start())
+}
+
+/// Splits text after the name at its start, which may be in quotes as in a TOML file. `None`: there is no name.
+fn split_name(text: &str) -> Option<(String, &str)> {
+    let end = match text.chars().next()? {
+        '\'' => 2 + text[1..].find('\'')?,
+        '"' => {
+            let mut escaped = false;
+            let closes = |c: char| {
+                let closes = c == '"' && !escaped;
+                escaped = c == '\\' && !escaped;
+                closes
+            };
+            2 + text[1..].find(closes)?
+        }
+        _ => {
+            let end = text.find(['.', '[']).unwrap_or(text.len());
+            return (end > 0).then(|| (text[..end].to_owned(), &text[end..]));
+        }
+    };
+    let (name, rest) = text.split_at(end);
+    Some((name.parse::<toml_edit::Key>().ok()?.get().to_owned(), rest))
+}
+
 impl FromStr for Key {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || {
+            format!(
+                "'{text}' names no value; expected names such as groom[0].look.roughness or material.\"my hair\".bend"
+            )
+        };
         let mut steps = Vec::new();
-        for word in text.split('.') {
-            let (name, place) = word.split_once('[').map_or((word, None), |(n, p)| (n, Some(p)));
-            if name.is_empty() {
-                return Err(format!(
-                    "'{text}' names no value; expected names such as groom[0].look.roughness"
-                ));
+        let mut rest = text;
+        loop {
+            let (name, after) = split_name(rest).ok_or_else(wrong)?;
+            steps.push(Step::Field(name));
+            rest = after;
+            if let Some(inside) = rest.strip_prefix('[') {
+                let place =
+                    inside.split_once(']').and_then(|(place, after)| Some((place.parse().ok()?, after)));
+                let (place, after) =
+                    place.ok_or_else(|| format!("'{rest}' is no entry of a list, such as [0]"))?;
+                steps.push(Step::Place(place));
+                rest = after;
             }
-            steps.push(Step::Field(name.into()));
-            if let Some(place) = place {
-                let place = place.strip_suffix(']').and_then(|p| p.parse().ok());
-                steps.push(Step::Place(
-                    place.ok_or_else(|| format!("'{word}' is no entry of a list, such as groom[0]"))?,
-                ));
+            if rest.is_empty() {
+                return Ok(Self(steps));
             }
+            rest = rest.strip_prefix('.').ok_or_else(wrong)?;
         }
-        Ok(Self(steps))
     }
 }
 
@@ -169,8 +229,8 @@ impl fmt::Display for Key {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (k, step) in self.0.iter().enumerate() {
             match step {
-                Step::Field(name) if k == 0 => write!(f, "{name}")?,
-                Step::Field(name) => write!(f, ".{name}")?,
+                Step::Field(name) if k == 0 => write!(f, "{}", written_name(name))?,
+                Step::Field(name) => write!(f, ".{}", written_name(name))?,
                 Step::Place(place) => write!(f, "[{place}]")?,
             }
         }
@@ -225,6 +285,24 @@ mod tests {
         for text in ["solver.substeps", "groom[2].look.root_color", "charged[0].path[1].time"] {
             assert_eq!(text.parse::<Key>().unwrap().to_string(), text);
         }
-        assert!(["", "a..b", "a[", "a[x]"].iter().all(|t| t.parse::<Key>().is_err()));
+        let wrong = ["", "a..b", "a.", "a[", "a[x]", "a[0]b", "a.\"b", "a.'b", "\"a\"b", "a.\"\\q\""];
+        assert!(wrong.iter().all(|t| t.parse::<Key>().is_err()));
+    }
+
+    #[test]
+    fn names_may_be_quoted_as_in_a_scene_file() {
+        let text = "[material.\"äö.ü\"]\nbend = 1 # soft\n";
+        for key in ["material.\"äö.ü\".bend", "material.'äö.ü'.bend", "material.\"\\u00e4ö.ü\".bend"]
+        {
+            assert_eq!(written(text, key, Some(3.into())).unwrap(), text.replace('1', "3"), "{key}");
+            assert_eq!(key.parse::<Key>().unwrap().to_string(), "material.\"äö.ü\".bend");
+        }
+        for name in ["my hair", "a\"b", "", "a\\", "[0]", "äö"] {
+            let key = Key::top("material").entry(name).field("bend");
+            assert_eq!(key.to_string().parse(), Ok(key));
+        }
+        assert_eq!(split_key("a.\"b \\\" c\".d  [1, 2]"), ("a.\"b \\\" c\".d", "[1, 2]"));
+        assert_eq!(split_key("a.'b \\'.d \"x y\""), ("a.'b \\'.d", "\"x y\""));
+        assert_eq!(split_key("gravity"), ("gravity", ""));
     }
 }

@@ -17,6 +17,7 @@
 //! | `panel` | the panels around the picture |
 //! | `bake` | groom files of a frame or of many |
 //! | `record`, `side_by_side`, `letters`, `script` | recordings, compared pictures and text on them; scripted sessions |
+//! | `text` | counts with their noun, shortened names |
 //! | `recovery` | unsaved changes, kept for a crash |
 //! | `memory` | returns unused memory to the system |
 //! | `app`, `desktop` | the window, and the message if it cannot open |
@@ -63,6 +64,7 @@ mod script;
 mod session;
 mod side_by_side;
 mod snapshot;
+mod text;
 mod view;
 
 pub use app::{App, Options};

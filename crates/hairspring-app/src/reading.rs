@@ -1,20 +1,40 @@
 //! Reads a scene again on its own thread after its hair, body or motion was edited. The window continues to
 //! show the previous scene.
 
-use crate::{AppError, document::Document};
-use hairspring_io::Loaded;
+use crate::{
+    AppError,
+    document::{Document, Source},
+};
+use hairspring_io::{Loaded, observe_files};
 use hairspring_scene::Scene;
-use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::{
+    cell::RefCell,
+    path::{Path, PathBuf},
+    rc::Rc,
+    sync::mpsc::{Receiver, TryRecvError, channel},
+};
 
-/// The scene, and the one that it is compared with.
-pub type Read = (Loaded<Scene>, Option<Loaded<Scene>>);
+/// Scenes that were read.
+pub struct Read {
+    /// The scene.
+    pub first: Loaded<Scene>,
+    /// The one that it is compared with.
+    pub second: Option<Loaded<Scene>>,
+    /// The files that they name.
+    pub files: Vec<PathBuf>,
+}
 
 /// Both scenes, or an error.
 pub type Outcome = Result<Read, AppError>;
 
 /// Reads both on the calling thread.
-pub fn both(document: &Document, second: Option<&Document>) -> Outcome {
-    Ok((document.load()?, second.map(Document::load).transpose()?))
+pub fn both(first: &Source, second: Option<&Source>) -> Outcome {
+    let files = Rc::<RefCell<Vec<PathBuf>>>::default();
+    let list = files.clone();
+    let observe = move |path: &Path, _: &[u8]| list.borrow_mut().push(path.to_owned());
+    let read = || Ok::<_, AppError>((first.load()?, second.map(Source::load).transpose()?));
+    let (first, second) = observe_files(observe, read)?;
+    Ok(Read { first, second, files: files.take() })
 }
 
 /// A read in progress.
@@ -35,7 +55,7 @@ impl Reading {
         let (send, outcome) = channel();
         let (first, second) = (document.source(), second.map(Document::source));
         std::thread::spawn(move || {
-            let read = || -> Outcome { Ok((first.load()?, second.map(|s| s.load()).transpose()?)) };
+            let read = || both(&first, second.as_ref());
             // A separate pool, because the global one draws the picture.
             let outcome = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
                 Ok(pool) => pool.install(read),

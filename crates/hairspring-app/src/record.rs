@@ -9,6 +9,7 @@ use crate::{
     session::{Action, Session},
     side_by_side::SideBySide,
     snapshot::{Snapshot, StageSnapshot, ViewParameters},
+    text::counted,
 };
 use hairspring_scene::stage::FrameRate;
 use hairspring_view::{
@@ -23,6 +24,9 @@ use std::{
         mpsc::{Receiver, Sender, channel},
     },
 };
+
+/// Maximum number of frames of a recording.
+const MOST_FRAMES: u32 = 100_000;
 
 /// Size and rate of a recording.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,6 +105,36 @@ pub struct RecordRequest {
     pub format: RecordFormat,
 }
 
+impl RecordRequest {
+    /// Number of frames.
+    ///
+    /// # Errors
+    /// Returns an error for a length of less than a frame, or of more than [`MOST_FRAMES`].
+    fn frames(&self) -> Result<u32, AppError> {
+        if self.kind == Kind::Still {
+            return Ok(1);
+        }
+        let hertz = self.format.rate.hertz();
+        let frames = (f64::from(self.seconds) * hertz).round();
+        if (1.0..=f64::from(MOST_FRAMES)).contains(&frames) {
+            return Ok(frames as u32);
+        }
+        let rounded = |seconds: f64| (seconds * 1e3).ceil() / 1e3;
+        Err(AppError::new(format!(
+            "a recording of {} s cannot be made; its length is {} to {} s, which are 1 to {MOST_FRAMES} frames",
+            self.seconds,
+            rounded(1.0 / hertz),
+            rounded(f64::from(MOST_FRAMES) / hertz)
+        )))
+    }
+
+    /// The files that it writes.
+    fn files(&self, frames: u32) -> impl Iterator<Item = PathBuf> {
+        let numbered = |number| sequence_path(&self.path, number).filter(|_| self.kind == Kind::Pictures);
+        (1..=frames).map_while(numbered).chain([self.path.clone()])
+    }
+}
+
 /// A frame of a recording.
 struct Shot {
     snapshot: Arc<Snapshot>,
@@ -144,13 +178,9 @@ impl Recorder {
         wake: impl Fn() + Send + 'static,
     ) -> Result<Self, AppError> {
         request.path = destination(&request.path)?;
+        let frames = request.frames()?;
+        session.keep_files(request.files(frames))?;
         let sink = Sink::new(&request, gpu)?;
-        let frames = match request.kind {
-            Kind::Still => 1,
-            _ => {
-                ((f64::from(request.seconds) * request.format.rate.hertz()).round() as u32).clamp(1, 100_000)
-            }
-        };
         let played = session.playing();
         session.act(Action::Play(false))?;
         let (jobs, todo) = channel();
@@ -183,7 +213,7 @@ impl Recorder {
             let path = self.request.path.display();
             let message = match self.request.kind {
                 Kind::Still => format!("wrote {path}"),
-                _ => format!("wrote {path}: {} frames", self.frames),
+                _ => format!("wrote {path}: {}", counted(self.frames.into(), "frame")),
             };
             return Some(self.end(session, Ok(message)));
         }
@@ -371,6 +401,19 @@ pub fn write(path: &Path, image: &hairspring_view::Image) -> Result<(), AppError
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_length_without_frames_or_with_too_many_is_refused() {
+        let frames = |seconds: f32| {
+            let (path, format) = (PathBuf::from("a.mp4"), RecordFormat::default());
+            RecordRequest { kind: Kind::Clip, path, seconds, format }.frames()
+        };
+        assert_eq!((frames(0.02), frames(2.0), frames(3000.0)), (Ok(1), Ok(60), Ok(90_000)));
+        for seconds in [0.0, 0.01, -1.0, f32::NAN, f32::INFINITY, 4000.0] {
+            let why = frames(seconds).unwrap_err().to_string();
+            assert!(why.contains("0.034 to 3333.334 s"), "{why}");
+        }
+    }
 
     #[test]
     fn the_steps_of_a_frame_add_up_to_its_length_and_are_at_most_those_of_the_window() {

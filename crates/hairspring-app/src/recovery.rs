@@ -1,7 +1,7 @@
 //! Recovery after a crash: unsaved changes are kept in a file of the user, which the next start offers.
 //!
-//! Each window keeps one file, and locks another beside it while it runs. A file without a locked neighbor was
-//! left by a window that ended without its user's decision.
+//! Each window keeps a file for each open scene, and locks another beside it while it runs. A file without a locked
+//! neighbor was left by a window that ended without its user's decision.
 
 use crate::{AppError, document::Document};
 use hairspring_io::atomically;
@@ -27,8 +27,8 @@ pub fn recovery_folder() -> Option<PathBuf> {
 pub struct KeptScene {
     /// Path of the scene file. Files that the scene names are relative to its folder.
     pub path: PathBuf,
-    /// Whether the scene was ever saved there.
-    pub on_disk: bool,
+    /// Content of that file when it was last read or saved; `None` if the scene has no file.
+    pub stored: Option<String>,
     /// The text with all changes.
     pub text: String,
 }
@@ -76,7 +76,7 @@ fn is_locked(lock: &Path) -> bool {
     File::open(lock).is_ok_and(|file| matches!(file.try_lock(), Err(std::fs::TryLockError::WouldBlock)))
 }
 
-/// Keeps the unsaved changes of one window.
+/// Keeps the unsaved changes of one scene of a window.
 pub struct Recovery {
     file: PathBuf,
     /// Locked while the window runs.
@@ -120,23 +120,23 @@ impl Recovery {
         Err(io::ErrorKind::AlreadyExists.into())
     }
 
-    /// Keeps the document if it has new unsaved changes. Returns the time until it must be called again, if
-    /// something is left to be written.
+    /// Keeps the document if it has new unsaved changes; `None`: the scene is closed. Returns the time until it must be
+    /// called again, if something is left to be written.
     ///
     /// # Errors
     /// Returns an error if the last write failed.
-    pub fn keep(&mut self, document: &Document) -> Result<Option<Duration>, AppError> {
+    pub fn keep(&mut self, document: Option<&Document>) -> Result<Option<Duration>, AppError> {
         if self.writing.as_ref().is_some_and(JoinHandle::is_finished) {
             self.finish_write()?;
         }
-        if !document.is_changed() {
+        let Some(document) = document.filter(|document| document.is_changed()) else {
             if self.kept.is_some() && self.writing.is_none() {
                 self.kept = None;
                 // A file that stays is overwritten later, or removed at the end.
                 let _ = std::fs::remove_file(&self.file);
             }
             return Ok(None);
-        }
+        };
         if self.kept.as_deref() == Some(document.text()) {
             return Ok(None);
         }

@@ -99,6 +99,29 @@ fn bakes_and_exports_that_cannot_be_written_are_refused() {
 }
 
 #[test]
+fn files_of_the_scene_are_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let groom = folder.path().join("few.hair");
+    let mut first = window(folder.path(), SMALL, &format!("pause\nexport {}", groom.display()));
+    assert!(until(&mut first, |app| app.is_idle()) && groom.exists());
+    drop(first);
+    let before = std::fs::read(&groom).unwrap();
+    let scene = "[[groom]]\nfile = \"few.hair\"\nguides = 60\n";
+    for line in ["export", "bake"] {
+        let frames = if line == "bake" { " 1" } else { "" };
+        for side in ["", "compare on\n", "compare on\nsecond off\n"] {
+            let script = format!("pause\nwait 1\n{side}{line} {}{frames}", groom.display());
+            let mut window = window(folder.path(), scene, &script);
+            assert!(until(&mut window, |app| app.is_idle()));
+            let (message, wrong) = window.state().message().expect("there is no message");
+            assert!(wrong && message.contains("few.hair is a file of the scene"), "{line}: {message}");
+            assert_eq!(window.state().script_errors(), 1, "{line}");
+        }
+    }
+    assert_eq!(std::fs::read(&groom).unwrap(), before, "the groom was replaced");
+}
+
+#[test]
 fn recordings_have_the_size_and_the_rate_that_were_chosen() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| folder.path().join(name);

@@ -118,6 +118,12 @@ fn refused_commands_report_an_error_and_change_nothing() {
         ("set no.such 1", "no"),
         ("still hair.txt", "png"),
         ("clip hair.png 1", "mp4"),
+        ("clip hair.mp4 0.001", "1 to 100000 frames"),
+        ("turntable hair.mp4 4000", "1 to 100000 frames"),
+        ("unset wind.gust", "nothing to remove"),
+        ("unset wnd.gust", "nothing to remove"),
+        ("range 500000 600000", "from frame 500000 to 600000"),
+        ("save few.hair", "few.hair: a scene is written as .toml"),
     ] {
         let mut window = self::window(folder.path(), SMALL, &format!("pause\n{line}"));
         assert!(until(&mut window, |app| app.is_idle()));
@@ -125,6 +131,36 @@ fn refused_commands_report_an_error_and_change_nothing() {
         assert!(wrong && message.contains(word), "{line}: {message:?}");
         assert_eq!(window.state().session().document().text(), SMALL, "'{line}' changed the scene");
     }
+}
+
+#[test]
+fn a_paused_wait_takes_exactly_its_steps() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut window = window(folder.path(), SMALL, "pause\nreset\nwait 130");
+    assert!(until(&mut window, |app| app.is_idle()));
+    let time = window.state().session().latest().unwrap().time;
+    assert!((time - 130.0 / 60.0).abs() < 1e-6, "{time}");
+}
+
+#[test]
+fn an_opened_motion_reports_what_it_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let motion = folder.path().join("nod.bvh");
+    std::fs::write(
+        &motion,
+        "HIERARCHY\nROOT head\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n\
+         MOTION\nFrames: 2\nFrame Time: 0.1\n0 0 0\n0 9 0\n",
+    )
+    .unwrap();
+    let scene = format!(
+        "{SMALL}# her nod\n[clip]\nkeys = [{{ time = 0.0 }}, {{ time = 1.0, rotation = [0.0, 5.0, 0.0] }}]\n"
+    );
+    let script = format!("pause\nopen {}\nwait 1", motion.display());
+    let mut window = window(folder.path(), &scene, &script);
+    assert!(until(&mut window, |app| app.is_idle()));
+    let (message, wrong) = window.state().message().expect("there is no message");
+    assert!(!wrong && message.ends_with("removed from the scene: clip.keys"), "{message}");
+    assert!(window.state().session().document().text().contains("# her nod\n[clip]\nfile = "));
 }
 
 #[test]

@@ -74,3 +74,14 @@ fn discarded_changes_are_not_offered_again() {
     assert!(!kept(&left) && window.query_by_label("Discard").is_none());
     assert_eq!(window.state().session().document().text(), SMALL);
 }
+
+#[test]
+fn changes_of_the_right_scene_of_a_comparison_are_kept_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let running = folder.path().join("running");
+    let script = "pause\ncompare on\nset gravity [0.0, -1.0, 0.0]\nwait 1";
+    let mut window = window_with(folder.path(), SMALL, script, Some(running.clone()));
+    assert!(until(&mut window, |app| app.is_idle() && kept(&running)), "the changes are not kept");
+    drop(window);
+    assert_eq!(files(&running), [""; 0].map(PathBuf::from), "a closed window leaves files");
+}

@@ -3,10 +3,13 @@
 //! A [`PendingFile`] is written under a temporary name in the folder of its target. It gets its final name
 //! when it is complete and on the disk. If it is dropped before that, it is removed. A program that is about
 //! to exit removes all pending files with [`remove_pending_files`].
+//!
+//! A file that is replaced keeps its permissions. If the target is a symbolic link, the file that it leads to is
+//! replaced, and the link stays.
 
 use std::{
     collections::BTreeSet,
-    fs::File,
+    fs::{File, Permissions},
     io::{self, BufWriter, Write},
     path::{Path, PathBuf},
     sync::{Mutex, MutexGuard, PoisonError},
@@ -15,6 +18,9 @@ use tempfile::NamedTempFile;
 
 /// Size of the write buffer [bytes].
 const BUFFER: usize = 1 << 20;
+
+/// Maximum number of symbolic links in a row, as on Linux.
+const MOST_LINKS: usize = 40;
 
 /// The pending files of this process; `None` after [`remove_pending_files`].
 static PENDING: Mutex<Option<BTreeSet<PathBuf>>> = Mutex::new(Some(BTreeSet::new()));
@@ -32,33 +38,62 @@ fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
+/// Returns the file that `path` leads to: `path` itself, unless it is a symbolic link.
+fn follow_links(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match path.read_link() {
+            Ok(next) => path = folder_of(&path).join(next),
+            // It is no link, or it does not exist yet.
+            Err(_) => return Ok(path),
+        }
+    }
+    Err(io::Error::other("too many symbolic links lead on from it"))
+}
+
+/// Returns the permissions of an existing file; `None` for a new one. Only Unix can pass them on to another file.
+fn permissions_of(target: &Path) -> Option<Permissions> {
+    let there = std::fs::metadata(target).ok().filter(|there| cfg!(unix) && there.is_file());
+    there.map(|there| there.permissions())
+}
+
 /// A file that is being written under a temporary name.
 #[derive(Debug)]
 pub struct PendingFile {
     target: PathBuf,
+    /// Permissions of the file that is replaced; `None` if there is none.
+    permissions: Option<Permissions>,
     /// `None` only after the file was renamed.
     temporary: Option<NamedTempFile>,
 }
 
 impl PendingFile {
-    /// Creates a temporary file in the folder of `target`. The finished file has the permissions of a new
-    /// file.
+    /// Creates a temporary file in the folder of `target`. The finished file has the permissions of the file that it
+    /// replaces, or those of a new file.
     ///
     /// # Errors
-    /// Returns the error of the system, or an error after [`remove_pending_files`].
+    /// Returns the error of the system, or an error for a target that is not a regular file or after
+    /// [`remove_pending_files`].
     pub fn create(target: &Path) -> io::Result<Self> {
+        let target = follow_links(target)?;
+        if std::fs::metadata(&target).is_ok_and(|there| !there.is_file()) {
+            return Err(io::Error::other("it is a folder, a pipe, a socket or a device; name a file"));
+        }
+        let permissions = permissions_of(&target);
         let mut builder = tempfile::Builder::new();
         builder.prefix(".hairspring-");
-        // Temporary files are private by default. The finished file gets the usual permissions, limited by
-        // the umask.
+        // Temporary files are private by default, and stay so if the finished file gets other permissions. A new
+        // file gets the usual ones, limited by the umask.
         #[cfg(unix)]
-        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        if permissions.is_none() {
+            builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        }
         // The lock is held while the file is created, so that no file appears after the others were removed.
         let mut pending = pending();
         let names = pending.as_mut().ok_or_else(ending)?;
-        let temporary = builder.tempfile_in(folder_of(target))?;
+        let temporary = builder.tempfile_in(folder_of(&target))?;
         names.insert(temporary.path().to_owned());
-        Ok(Self { target: target.to_owned(), temporary: Some(temporary) })
+        Ok(Self { target, permissions, temporary: Some(temporary) })
     }
 
     /// Returns another handle to the file.
@@ -77,7 +112,10 @@ impl PendingFile {
         let temporary = self.temporary.take().ok_or_else(ending)?;
         let name = temporary.path().to_owned();
         // Without this, a crash of the system after the rename may leave an empty file under the final name.
-        let outcome = temporary.as_file().sync_all().and_then(|()| {
+        let file = temporary.as_file();
+        let permitted =
+            self.permissions.take().map_or(Ok(()), |permissions| file.set_permissions(permissions));
+        let outcome = permitted.and_then(|()| file.sync_all()).and_then(|()| {
             // The lock is held during the rename, so that no file appears after the program has reported its
             // end.
             let pending = pending();

@@ -51,6 +51,34 @@ fn complete_or_absent() {
         let mode = |p: &Path| std::fs::metadata(p).unwrap().permissions().mode();
         assert_eq!(mode(&path), mode(&plain));
         std::fs::remove_file(plain).unwrap();
+
+        // A file that is replaced keeps its permissions, whatever the umask.
+        for rights in [0o600, 0o444, 0o666] {
+            std::fs::set_permissions(&path, PermissionsExt::from_mode(rights)).unwrap();
+            write_atomically(&path, |out| out.write_all(b"first")).unwrap();
+            assert_eq!(mode(&path) & 0o777, rights);
+        }
+
+        // A link stays, and the file that it leads to is replaced, or created.
+        for target in ["a.txt", "new.txt"] {
+            let [link, chain] = ["link", "chain"].map(|name| folder.path().join(name));
+            std::os::unix::fs::symlink(target, &link).unwrap();
+            std::os::unix::fs::symlink("link", &chain).unwrap();
+            write_atomically(&chain, |out| out.write_all(b"first")).unwrap();
+            assert!(link.is_symlink() && chain.is_symlink(), "{target}: a link was replaced");
+            assert_eq!(std::fs::read(folder.path().join(target)).unwrap(), b"first");
+            [link, chain].into_iter().for_each(|link| std::fs::remove_file(link).unwrap());
+        }
+        std::fs::remove_file(folder.path().join("new.txt")).unwrap();
+        // A device is never replaced, not even at the end of a link.
+        let device = folder.path().join("device");
+        std::os::unix::fs::symlink("/dev/null", &device).unwrap();
+        assert!(write_atomically(&device, |_| Ok(())).unwrap_err().to_string().contains("a device"));
+        std::fs::remove_file(device).unwrap();
+        let around = folder.path().join("around");
+        std::os::unix::fs::symlink("around", &around).unwrap();
+        assert!(write_atomically(&around, |_| Ok(())).unwrap_err().to_string().contains("symbolic links"));
+        std::fs::remove_file(around).unwrap();
     }
 
     // After the removal nothing appears, also not from a file that was pending before.

@@ -20,7 +20,7 @@ impl App {
             self.files.open_dialog(For::Open, None);
         }
         if pressed(Modifiers::COMMAND, Key::S) {
-            self.save(actions);
+            self.save();
         }
         if pressed(Modifiers::NONE, Key::Space) {
             actions.push(Action::Play(!self.session.playing()));
@@ -75,10 +75,12 @@ impl App {
         snapshot.cached.frames.iter().rev().find(|frame| **frame < snapshot.frame).copied()
     }
 
-    fn save(&mut self, actions: &mut Vec<Action>) {
-        match self.session.document().file() {
-            Some(_) => actions.push(Action::Save(None)),
-            None => self.files.open_dialog(For::Save, None),
+    /// Saves the scene whose parameters are shown. Without a file, or if another program changed it, the dialog asks.
+    pub(super) fn save(&mut self) {
+        let document = self.session.edited();
+        match document.file() {
+            Some(_) if !document.is_changed_on_disk() => self.act(Action::Save(None)),
+            _ => self.files.open_save_dialog(document),
         }
     }
 
@@ -93,10 +95,10 @@ impl App {
                     self.files.open_dialog(For::Open, None);
                 }
                 if ui.button("Save").clicked() {
-                    self.save(actions);
+                    self.save();
                 }
                 if ui.button("Save as…").clicked() {
-                    self.files.open_dialog(For::Save, self.session.document().file());
+                    self.files.open_save_dialog(self.session.edited());
                 }
                 ui.separator();
                 if ui.button("Export hair…").clicked() {
@@ -126,7 +128,7 @@ impl App {
             }
             ui.toggle_value(&mut self.open.graphs, "Graphs");
             ui.toggle_value(&mut self.open.help, "?");
-            let document = self.session.document();
+            let document = self.session.edited();
             let star = if document.is_changed() { " *" } else { "" };
             let file = document.file();
             let name = file.and_then(|p| p.file_name()).map(|n| n.to_string_lossy());

@@ -9,7 +9,7 @@ mod status_overlay;
 use crate::{
     AppError,
     bake::{self, BakeRequest, Baker},
-    document::{Document, builtin_text},
+    document::{Document, builtin_text, replaces_scene},
     finger::Finger,
     memory,
     painter::{Drawn, Painter},
@@ -22,7 +22,7 @@ use crate::{
     record::{RecordRequest, Recorder},
     recovery::{self, FoundScene, Recovery},
     script::Script,
-    session::{Action, Session},
+    session::{Action, Session, Side},
     view::View,
 };
 use eframe::egui::{self, Color32, Ui};
@@ -80,10 +80,14 @@ pub struct App {
     script_errors: Arc<AtomicUsize>,
     /// The step that the script waits for.
     waits: u64,
+    /// Number of steps that the script still takes after it.
+    steps: u64,
     finger: Finger,
     /// Rectangle of the last drawn picture: both sides of a comparison, and the first side.
     whole: egui::Rect,
     rect: egui::Rect,
+    /// Height of the caption over the first side [points]; 0 without a comparison.
+    caption: f32,
     /// A picture of the window that is being written; receives the result.
     shot: Option<Receiver<Result<(), AppError>>>,
     /// Number of hairs and guides of new scenes, matched to the speed of this machine.
@@ -93,8 +97,8 @@ pub struct App {
     leaving: Option<Leaving>,
     /// Whether the window closes without a question.
     closes: bool,
-    /// Keeps unsaved changes for a crash.
-    recovery: Option<Recovery>,
+    /// Keeps unsaved changes for a crash: those of the left and of the right scene. Empty if they are not kept.
+    recovery: Vec<Recovery>,
     /// Scenes of windows that crashed, until the user decides on them.
     found: Vec<FoundScene>,
 }
@@ -115,9 +119,10 @@ impl App {
         let session =
             Session::new(document, painters[0].spared(), painters[0].gpu(), painters[0].wake(&ctx))?;
         let found = recovery.as_deref().map(recovery::find).unwrap_or_default();
-        let (recovery, unkept) = match recovery.as_deref().map(Recovery::new).transpose() {
-            Ok(recovery) => (recovery, None),
-            Err(why) => (None, Some((why.to_string(), true, Instant::now()))),
+        let reserve = |folder: &Path| Ok::<_, AppError>(vec![Recovery::new(folder)?, Recovery::new(folder)?]);
+        let (recovery, unkept) = match recovery.as_deref().map(reserve).transpose() {
+            Ok(recovery) => (recovery.unwrap_or_default(), None),
+            Err(why) => (Vec::new(), Some((why.to_string(), true, Instant::now()))),
         };
         ctx.set_theme(egui::Theme::Dark);
         // The window is already cleared with that color. Filling the panels again would take a software
@@ -138,9 +143,11 @@ impl App {
             script,
             script_errors,
             waits: 0,
+            steps: 0,
             finger: Finger::new(&ctx),
             whole: egui::Rect::NOTHING,
             rect: egui::Rect::NOTHING,
+            caption: 0.0,
             shot: None,
             hairs,
             drawn: None,
@@ -163,7 +170,7 @@ impl App {
             && self.baker.is_none()
             && self.finger.rests()
             && self.shot.is_none()
-            && self.waits == 0
+            && (self.waits, self.steps) == (0, 0)
     }
 
     /// Number of errors that lines of the script caused.
@@ -188,12 +195,26 @@ impl App {
 
     fn act(&mut self, action: Action) {
         let before = self.session.opened();
-        let saves = matches!(action, Action::Save(_));
+        let saves = matches!(action, Action::Save(_) | Action::SaveOver(_));
+        // A body or a motion takes the place of a part of the scene.
+        let part = match &action {
+            Action::Open(path) if !replaces_scene(path) => {
+                Some((path.clone(), self.session.document().parsed_text().clone()))
+            }
+            _ => None,
+        };
         match self.session.act(action) {
             Ok(()) => {
                 self.view.forget |= self.session.opened() != before;
-                if let Some(file) = self.session.document().file().filter(|_| saves) {
+                if let Some(file) = self.session.edited().file().filter(|_| saves) {
                     self.set_message(format!("saved {}", file.display()), false);
+                }
+                if let Some((path, earlier)) = part {
+                    let removed = match &self.session.document().removed_since(&earlier)[..] {
+                        [] => String::new(),
+                        removed => format!("; removed from the scene: {}", removed.join(", ")),
+                    };
+                    self.set_message(format!("opened {}{removed}", path.display()), false);
                 }
             }
             Err(why) => self.set_message(why.to_string(), true),
@@ -202,11 +223,16 @@ impl App {
 
     /// Keeps unsaved changes for a crash.
     fn keep_changes(&mut self, ctx: &egui::Context) {
-        let Some(recovery) = &mut self.recovery else { return };
-        match recovery.keep(self.session.document()) {
-            Ok(Some(wait)) => ctx.request_repaint_after(wait),
-            Ok(None) => {}
-            Err(why) => self.set_message(why.to_string(), true),
+        let mut failed = None;
+        for (recovery, side) in self.recovery.iter_mut().zip([Side::Left, Side::Right]) {
+            match recovery.keep(self.session.on(side)) {
+                Ok(Some(wait)) => ctx.request_repaint_after(wait),
+                Ok(None) => {}
+                Err(why) => failed = Some(why),
+            }
+        }
+        if let Some(why) = failed {
+            self.set_message(why.to_string(), true);
         }
     }
 
@@ -220,24 +246,26 @@ impl App {
         }
     }
 
-    /// Writes the hair of the current frame.
+    /// Writes the hair of the current frame, of the scene whose parameters are shown.
     fn export(&mut self, path: &Path) {
+        let side = usize::from(self.session.on_second());
         let snapshot = self.session.latest();
-        let Some(stage) = snapshot.as_ref().and_then(|snapshot| snapshot.stages.first()) else { return };
-        match bake::export(path, stage) {
+        let Some(stage) = snapshot.as_ref().and_then(|snapshot| snapshot.stages.get(side)) else { return };
+        match self.session.keep_files([path.to_owned()]).and_then(|()| bake::export(path, stage)) {
             Ok(message) => self.set_message(message, false),
             Err(why) => self.set_message(why.to_string(), true),
         }
     }
 
-    /// Starts a bake, for which the scene pauses.
+    /// Starts a bake of the scene whose parameters are shown. The window's own simulation pauses.
     fn bake(&mut self, ctx: &egui::Context, request: BakeRequest) {
         if self.baker.is_some() {
             return self.set_message("a bake is running already: stop it, or wait for its end", true);
         }
         let wake = ctx.clone();
-        let (source, threads) = (self.session.document().source(), self.painters[0].spared());
-        match Baker::new(request, source, threads, move || wake.request_repaint()) {
+        let (source, threads) = (self.session.edited().source(), self.painters[0].spared());
+        let kept = self.session.keep_files(request.files());
+        match kept.and_then(|()| Baker::new(request, source, threads, move || wake.request_repaint())) {
             Ok(baker) => {
                 self.act(Action::Play(false));
                 self.baker = Some(baker);
@@ -297,7 +325,7 @@ impl eframe::App for App {
         if let Some(why) = self.session.restart_if_dead() {
             self.set_message(why.to_string(), true);
             // The new thread counts steps from 0, so what waits for a step would wait for long.
-            self.waits = 0;
+            (self.waits, self.steps) = (0, 0);
             if let Some(recorder) = self.recorder.take() {
                 // The message above is about the same.
                 let _ = recorder.stop(&mut self.session);
@@ -331,8 +359,9 @@ impl eframe::App for App {
                 inspect::figures(ui, &self.session, snapshot, &notes.join("; "));
             });
             if snapshot.picked.is_some() {
-                // Below the label of a side.
-                let below = egui::Rect::from_min_max(self.rect.min + egui::vec2(0.0, 22.0), self.rect.max);
+                // Below the caption of a side.
+                let min = self.rect.min + egui::vec2(0.0, self.caption.max(22.0));
+                let below = egui::Rect::from_min_max(min, self.rect.max);
                 status_overlay::corner(ctx, below, egui::Align2::LEFT_TOP, |ui| {
                     inspect::picked(ui, &self.session, snapshot, &mut actions)
                 });

@@ -38,6 +38,7 @@ impl App {
             self.view.frame(&self.session, snapshot, aspect);
         }
         let guides = self.session.shown() == Some(Value::Guide);
+        self.caption = 0.0;
         for (k, stage) in snapshot.stages.iter().enumerate() {
             let left = whole.left() + width * k as f32;
             let rect =
@@ -82,8 +83,10 @@ impl App {
             if count > 1 {
                 let side = if k == 0 { "Left" } else { "Right" };
                 let text = format!("{side} · {}", self.session.captions()[k.min(1)]);
-                let at = rect.left_top() + egui::vec2(10.0, 8.0);
-                status_overlay::text_on_picture(&painter, at, egui::Align2::LEFT_TOP, text, 16.0);
+                let shown = status_overlay::caption(&painter, rect, text, self.session.shown().is_some());
+                if k == 0 {
+                    self.caption = shown.bottom() - rect.top();
+                }
             }
             if let Some(value) = self.session.shown() {
                 status_overlay::legend(&painter, rect, value, &self.view, seen);

@@ -4,6 +4,7 @@ use super::App;
 use crate::{
     bake::BakeRequest,
     document::builtin_text,
+    key::{Key, written_name},
     record::{RecordRequest, write},
     script::Line,
     session::Action,
@@ -26,13 +27,15 @@ impl App {
             return;
         }
         self.waits = 0;
+        if self.steps > 0 {
+            return self.take_steps(snapshot.step);
+        }
         let Some(line) = self.script.begin_next() else { return };
         match line {
+            Line::Wait(steps) if self.session.playing() => self.waits = snapshot.step + steps,
             Line::Wait(steps) => {
-                self.waits = snapshot.step + steps;
-                if !self.session.playing() {
-                    (0..steps).for_each(|_| self.act(Action::Step));
-                }
+                self.steps = steps;
+                self.take_steps(snapshot.step);
             }
             Line::Play(on) => self.act(Action::Play(on)),
             Line::Step => self.act(Action::Step),
@@ -40,10 +43,7 @@ impl App {
             Line::Seek(frame) => self.act(Action::Seek(frame)),
             Line::Range(range) => self.act(Action::Range(range)),
             Line::Speed(speed) => self.act(Action::Speed(speed)),
-            Line::Set(key, value) => {
-                self.act(Action::Set(key, value));
-                self.act(Action::Rest);
-            }
+            Line::Set(key, value) => self.set(key, value),
             Line::Undo => self.act(Action::Undo),
             Line::Redo => self.act(Action::Redo),
             Line::New(style) => self.act(Action::New(builtin_text(&style, Some(self.hairs)))),
@@ -77,6 +77,9 @@ impl App {
                 return ctx.request_repaint_after(Duration::from_millis(50));
             }
             Line::Shot(path) => {
+                if let Err(why) = self.session.keep_files([path.clone()]) {
+                    return self.set_message(why.to_string(), true);
+                }
                 let (send, receive) = channel();
                 self.shot = Some(receive);
                 let wake = ctx.clone();
@@ -96,6 +99,31 @@ impl App {
             Line::Quit => self.close(ctx),
         }
         ctx.request_repaint_after(Duration::from_millis(1));
+    }
+
+    /// Takes some of the steps that the script waits for while the scene is paused; `now` is the last step.
+    fn take_steps(&mut self, now: u64) {
+        let taken = self.steps.min(STEPS);
+        (0..taken).for_each(|_| self.act(Action::Step));
+        self.steps -= taken;
+        self.waits = now + taken;
+    }
+
+    /// Writes a value, or removes one that is in the text.
+    fn set(&mut self, key: Key, value: Option<toml_edit::Value>) {
+        if value.is_none() && key.look_up(self.session.edited().parsed_text()).is_none() {
+            let text = format!("the scene file has no {key}, so there is nothing to remove");
+            return self.set_message(text, true);
+        }
+        let before = self.session.edited().text().to_owned();
+        self.act(Action::Set(key.clone(), value));
+        self.act(Action::Rest);
+        let document = self.session.edited();
+        let unused = |name: &&str| document.text() != before && document.has_unused_material(name);
+        if let Some(name) = key.material().filter(unused) {
+            let name = written_name(name);
+            self.set_message(format!("no groom uses [material.{name}]; name it in `material`"), false);
+        }
     }
 
     /// Position in the window of a point of the picture.
@@ -135,6 +163,9 @@ impl App {
         }
     }
 }
+
+/// Most steps that are requested from the simulation at once: those of a second.
+const STEPS: u64 = 60;
 
 /// Converts a screenshot of the window to a picture.
 fn picture_of(image: &egui::ColorImage) -> hairspring_view::Image {

@@ -1,7 +1,7 @@
 //! Overlays on the picture: progress, messages, figures, and the legend of the color ramp.
 
 use super::{App, MESSAGE};
-use crate::{snapshot::StageSnapshot, view::View};
+use crate::{snapshot::StageSnapshot, text::counted, view::View};
 use eframe::egui::{self, Color32, Ui};
 use hairspring_scene::stage::Value;
 
@@ -22,7 +22,7 @@ impl App {
                 |ui| {
                     ui.add(
                         egui::ProgressBar::new(done as f32 / all as f32)
-                            .text(format!("{done} of {all} frames")),
+                            .text(format!("{done} of {}", counted(all.into(), "frame"))),
                     );
                     stopped = ui.button("Stop").clicked();
                 },
@@ -39,7 +39,7 @@ impl App {
             egui::Window::new("Baking").default_pos(corner).collapsible(false).resizable(false).show(
                 ctx,
                 |ui| {
-                    let done_so_far = format!("{done} of {all} frames");
+                    let done_so_far = format!("{done} of {}", counted(all.into(), "frame"));
                     ui.add(egui::ProgressBar::new(done as f32 / all as f32).text(done_so_far));
                     if ui
                         .button("Stop")
@@ -81,19 +81,30 @@ impl App {
 /// Color behind text on the picture, so that it can be read on any background.
 const BEHIND: Color32 = Color32::from_black_alpha(205);
 
-/// Draws text on the picture, readable on any background.
-pub(super) fn text_on_picture(
+/// Distance of a caption from the edges of its side [points].
+const CAPTION: egui::Vec2 = egui::vec2(10.0, 8.0);
+
+/// Draws text on the picture, readable on any background, in lines of at most `width` [points]. Returns its rectangle.
+fn text_on_picture(
     painter: &egui::Painter,
     at: egui::Pos2,
     align: egui::Align2,
     text: String,
-    size: f32,
-) {
+    (size, width): (f32, f32),
+) -> egui::Rect {
     let white = Color32::from_gray(235);
-    let galley = painter.layout_no_wrap(text, egui::FontId::proportional(size), white);
+    let galley = painter.layout(text, egui::FontId::proportional(size), white, width);
     let rect = align.anchor_size(at, galley.size());
-    painter.rect_filled(rect.expand2(egui::vec2(4.0, 1.0)), 3.0, BEHIND);
+    let behind = rect.expand2(egui::vec2(4.0, 1.0));
+    painter.rect_filled(behind, 3.0, BEHIND);
     painter.galley(rect.min, galley, white);
+    behind
+}
+
+/// Draws the caption of one side of a comparison, within this side and beside the color legend. Returns its rectangle.
+pub(super) fn caption(painter: &egui::Painter, side: egui::Rect, text: String, legend: bool) -> egui::Rect {
+    let room = side.width() - 2.0 * CAPTION.x - if legend { LEGEND } else { 0.0 };
+    text_on_picture(painter, side.min + CAPTION, egui::Align2::LEFT_TOP, text, (16.0, room.max(80.0)))
 }
 
 /// Shows text in a corner of the picture, on the left.
@@ -125,7 +136,7 @@ pub(super) fn legend(
 ) {
     let at = rect.right_top() + egui::vec2(-LEGEND, 14.0);
     let text = |place: egui::Pos2, align, text: String| {
-        text_on_picture(painter, place, align, text, 13.0);
+        text_on_picture(painter, place, align, text, (13.0, f32::INFINITY));
     };
     let unit = match value.unit() {
         "1" => "",
@@ -169,7 +180,22 @@ fn readable(value: f32, unit: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::readable;
+    use super::*;
+
+    #[test]
+    fn a_long_caption_stays_within_its_side() {
+        let long =
+            "Right · Integrator: backward-euler, Elastic model: curvature, Hair-hair interaction: density"
+                .repeat(2);
+        let side = egui::Rect::from_min_size(egui::pos2(300.0, 50.0), egui::vec2(300.0, 500.0));
+        let mut shown = Vec::new();
+        let ctx = egui::Context::default();
+        let _ = ctx.run_ui(egui::RawInput::default(), |ui| {
+            shown = [false, true].map(|legend| caption(ui.painter(), side, long.clone(), legend)).into();
+        });
+        assert!(shown.iter().all(|shown| side.contains_rect(*shown) && shown.height() > 40.0), "{shown:?}");
+        assert!(shown[1].right() < side.right() - LEGEND, "it covers the legend: {shown:?}");
+    }
 
     #[test]
     fn numbers_of_the_legend_can_be_read() {

@@ -1,69 +1,80 @@
-//! The files of a scene: saving, adjusting the paths of named files, and replacing the body or the motion.
+//! The files of a scene: saving, and adjusting the paths of named files.
 
-use super::{Document, parsed, table};
+use super::{Document, parsed, table, text_style::TextStyle};
 use crate::{
     AppError,
     destination::{destination, settled},
     recovery::KeptScene,
 };
-use hairspring_io::atomically;
-use std::path::{Path, PathBuf};
+use hairspring_io::{Format, atomically};
+use std::{
+    io::ErrorKind,
+    path::{Path, PathBuf},
+};
 use toml_edit::{Item, Value};
 
-/// Initial hair for a body without any.
-const COAT: &str =
-    "\n[[groom]]\nmaterial = \"short-fur\"\nguides = 1000\n\n[groom.grow]\nstrands = 20000\nlength = 0.02\n";
-
 impl Document {
-    /// Returns the text with another body, at rest. What belonged to the old body is removed. If no hair is
-    /// left, a short coat grows on the new body.
-    pub fn with_body(&self, file: &str) -> Result<String, AppError> {
-        let mut edited = parsed(self.text())?;
-        if edited.contains_key("builtin") {
-            // The old name no longer applies.
-            edited.remove("name");
-        }
-        for gone in ["builtin", "body", "collision", "clip"] {
-            edited.remove(gone);
-        }
-        let coat = if edited.contains_key("groom") { "" } else { COAT };
-        Ok(format!("{}\n\n[body]\nfile = {file}\n{coat}", edited.to_string().trim()).trim_start().to_owned())
-    }
-
-    /// Returns the text with another motion, which moves the joints of the same names.
-    pub fn with_motion(&self, file: &str) -> Result<String, AppError> {
-        let mut edited = parsed(self.text())?;
-        edited.remove("clip");
-        Ok(format!("{}\n\n[clip]\nfile = {file}\n", edited.to_string().trim_end()))
-    }
-
     /// The scene as it is kept for a crash.
     pub fn kept(&self) -> KeptScene {
-        KeptScene { path: settled(&self.path), on_disk: self.on_disk, text: self.text().to_owned() }
+        KeptScene { path: settled(&self.path), stored: self.stored.clone(), text: self.text().to_owned() }
     }
 
     /// Opens a scene that was kept for a crash. It has unsaved changes.
     pub fn recovered(scene: &KeptScene) -> Result<Self, AppError> {
         let document = Self::new(&scene.path, scene.text.clone())?;
-        Ok(Self { on_disk: scene.on_disk, ..document.never_saved() })
+        let style = scene.stored.as_deref().map(|content| TextStyle::split(content).0).unwrap_or_default();
+        Ok(Self { stored: scene.stored.clone(), style, ..document.never_saved() })
     }
 
-    /// Writes the text to a file, atomically. If the folder changes, the paths of named files are adjusted,
+    /// Whether another program changed the file since it was read or saved here. A file that is gone does not count.
+    pub fn is_changed_on_disk(&self) -> bool {
+        self.stored.as_ref().is_some_and(|known| match std::fs::read(&self.path) {
+            Ok(now) => now != known.as_bytes(),
+            Err(why) => why.kind() != ErrorKind::NotFound,
+        })
+    }
+
+    /// Writes the text to a `.toml` file, atomically. If the folder changes, the paths of named files are adjusted,
     /// in earlier texts too.
+    ///
+    /// # Errors
+    /// Returns an error for another extension, if another program changed the scene's own file, or if the file cannot be
+    /// written.
     pub fn save(&mut self, path: &Path) -> Result<(), AppError> {
+        if is_same_file(path, &self.path) && self.is_changed_on_disk() {
+            return Err(AppError::new(format!(
+                "{} was changed by another program since it was read; open it again, or save under another name",
+                path.display()
+            )));
+        }
+        self.save_over(path)
+    }
+
+    /// Like [`Document::save`], but also replaces a file that another program changed.
+    pub fn save_over(&mut self, path: &Path) -> Result<(), AppError> {
+        if Format::of(path) != Some(Format::Scene) {
+            let path = path.display();
+            return Err(AppError::new(format!("{path}: a scene is written as .toml; name such a file")));
+        }
         let path = destination(path)?;
         let from = settled(&self.path);
         let move_to =
             |text: &str| text_in_folder(text, [&from, &path].map(|p| p.parent().unwrap_or(Path::new(""))));
         let text = move_to(&self.draft.text)?;
-        atomically(&path, |out| out.write_all(text.as_bytes()))
+        let content = self.style.content(&text);
+        atomically(&path, |out| out.write_all(content.as_bytes()))
             .map_err(|why| AppError::new(format!("{} could not be written: {why}", path.display())))?;
         self.history.rename(|text| move_to(text))?;
         self.parsed_text = table(&text)?;
         self.draft.text.clone_from(&text);
-        (self.path, self.saved, self.on_disk) = (path, text, true);
+        (self.path, self.saved, self.stored) = (path, text, Some(content));
         Ok(())
     }
+}
+
+/// Whether two paths lead to the same file, which exists.
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    one.canonicalize().is_ok_and(|one| other.canonicalize().is_ok_and(|other| one == other))
 }
 
 /// Returns the text of a scene with the paths of named files, relative to one folder, rewritten relative to another.
@@ -158,15 +169,74 @@ mod tests {
     }
 
     #[test]
-    fn a_body_that_replaces_the_built_in_head_gets_a_coat_and_keeps_other_hair() {
-        let head = "name = \"Built-in head\"\n[builtin]\nstyle = \"wavy\"\n\n[[collider]]\nshape.sphere = { center = [0.0, 1.0, 0.0], radius = 0.1 }\n";
-        for (text, coat) in [(head, true), (SCENE, false)] {
-            let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
-            let text = document.with_body("\"b.obj\"").unwrap();
-            let other = Document::new("scene.toml".as_ref(), text.clone()).unwrap();
-            assert_eq!(other.settings().grooms.len(), 1, "{text}");
-            assert_eq!(text.contains("[groom.grow]"), coat, "{text}");
-            assert!(text.contains("collider") && !text.contains("uilt"), "{text}");
+    fn a_scene_is_saved_as_toml_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let groom = folder.path().join("a.hair");
+        std::fs::write(&groom, "hair").unwrap();
+        let mut document = Document::new(&folder.path().join("scene.toml"), SCENE.into()).unwrap();
+        let why = document.save(&groom).unwrap_err().to_string();
+        assert!(why.contains("a.hair: a scene is written as .toml"), "{why}");
+        assert_eq!(std::fs::read_to_string(&groom).unwrap(), "hair");
+    }
+
+    #[test]
+    fn a_file_that_another_program_changed_is_not_overwritten() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, SCENE).unwrap();
+        let mut document = Document::open(&path).unwrap();
+        let gravity = "gravity".parse().unwrap();
+        document.set(&gravity, Some(Value::from_iter([0.0, -1.0, 0.0]))).unwrap();
+        document.save(&path).unwrap();
+        let theirs = format!("# theirs\n{SCENE}");
+        std::fs::write(&path, &theirs).unwrap();
+        document.set(&gravity, Some(Value::from_iter([0.0, -2.0, 0.0]))).unwrap();
+        let kept: KeptScene = toml::from_str(&toml::to_string(&document.kept()).unwrap()).unwrap();
+        for document in [&mut document, &mut Document::recovered(&kept).unwrap()] {
+            let why = document.save(&path).unwrap_err().to_string();
+            assert!(why.contains("changed by another program") && document.is_changed(), "{why}");
         }
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), theirs);
+        document.save_over(&path).unwrap();
+        assert!(std::fs::read_to_string(&path).unwrap().contains("-2.0") && !document.is_changed_on_disk());
+        // A file that is gone is written again.
+        std::fs::remove_file(&path).unwrap();
+        document.save(&path).unwrap();
+    }
+
+    #[test]
+    fn a_saved_file_keeps_its_byte_order_mark_and_line_ends() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        let content = format!("\u{feff}{}", SCENE.replace('\n', "\r\n"));
+        std::fs::write(&path, &content).unwrap();
+        let mut document = Document::open(&path).unwrap();
+        assert_eq!(document.text(), SCENE);
+        document.set(&"solver.substeps".parse().unwrap(), Some(3.into())).unwrap();
+        let kept: KeptScene = toml::from_str(&toml::to_string(&document.kept()).unwrap()).unwrap();
+        for document in [&mut Document::recovered(&kept).unwrap(), &mut document] {
+            document.save_over(&path).unwrap();
+            let saved = std::fs::read_to_string(&path).unwrap();
+            assert_eq!(saved, format!("{content}\r\n[solver]\r\nsubsteps = 3\r\n"));
+        }
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn saving_keeps_permissions_and_a_link_whose_folder_names_are_relative_to() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let inner = folder.path().join("inner");
+        std::fs::create_dir(&inner).unwrap();
+        let (file, link) = (inner.join("real.toml"), folder.path().join("scene.toml"));
+        std::fs::write(&file, SCENE).unwrap();
+        std::fs::set_permissions(&file, PermissionsExt::from_mode(0o600)).unwrap();
+        std::os::unix::fs::symlink("inner/real.toml", &link).unwrap();
+        let mut document = Document::open(&link).unwrap();
+        document.set(&"solver.substeps".parse().unwrap(), Some(3.into())).unwrap();
+        document.save(&link).unwrap();
+        assert!(link.is_symlink() && std::fs::read_to_string(&file).unwrap() == document.text());
+        assert!(document.text().contains("\"a.hair\""), "{}", document.text());
+        assert_eq!(file.metadata().unwrap().permissions().mode() & 0o777, 0o600);
     }
 }

@@ -73,6 +73,12 @@ impl Document {
         self.parsed_text.get("material")?.get(&name).map(|_| name)
     }
 
+    /// Whether the text defines a material that no groom uses.
+    pub fn has_unused_material(&self, name: &str) -> bool {
+        let defined = self.parsed_text.get("material").is_some_and(|materials| materials.get(name).is_some());
+        defined && !self.grooms().any(|groom| self.materials_of(groom).iter().any(|used| used == name))
+    }
+
     /// Key of groom `groom` in the text; `None` for the brows of the built-in head, which are not in the
     /// text.
     pub fn groom_key(&self, groom: usize) -> Option<Key> {
@@ -112,6 +118,17 @@ fn implicit() -> Table {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_material_that_no_groom_names_is_unused() {
+        let text = "[builtin]\nmaterial = \"a\"\n[[groom]]\nmaterial = [\"b\", \"curly\"]\n[groom.grow]\nstrands = 5\n\
+            [material.a]\n[material.b]\n[material.\"c d\"]\n";
+        let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
+        assert_eq!(
+            ["a", "b", "c d", "curly"].map(|name| document.has_unused_material(name)),
+            [false, false, true, false]
+        );
+    }
 
     #[test]
     fn grooms_are_named_after_their_files_and_numbered_if_names_repeat() {

@@ -8,8 +8,10 @@ mod files;
 mod history;
 mod material;
 mod open;
+mod parts;
+mod text_style;
 
-pub use files::text_in_folder;
+pub use files::{is_same_file, text_in_folder};
 pub use history::Way;
 pub use open::{KINDS, new_scene, replaces_scene};
 
@@ -18,6 +20,7 @@ use hairspring_io::{Inputs, Loaded, read_scene_text, read_settings, same_geometr
 use hairspring_scene::Scene;
 use history::{Draft, History};
 use std::path::{Path, PathBuf};
+use text_style::TextStyle;
 use toml_edit::{ArrayOfTables, DocumentMut, Item, Table, Value};
 
 /// The text of the window's initial scene: the built-in head, with the given numbers of hairs and guides.
@@ -46,8 +49,9 @@ pub fn set_in_text(text: &str, key: &str, value: &str) -> Result<String, AppErro
 pub struct Document {
     /// The path of the file. Files that the scene names are relative to its folder.
     path: PathBuf,
-    /// Whether the file exists.
-    on_disk: bool,
+    /// Content of the file when it was last read or saved; `None` if the scene has no file.
+    stored: Option<String>,
+    style: TextStyle,
     draft: Draft,
     saved: String,
     history: History,
@@ -64,7 +68,7 @@ pub struct Document {
     first: [toml::Table; 2],
 }
 
-/// A scene's text and its path, for loading it elsewhere.
+/// The content of a scene's file, with all changes, and its path, for loading it elsewhere.
 pub struct Source {
     path: PathBuf,
     text: String,
@@ -102,7 +106,8 @@ impl Document {
         let effective = effective(&settings, &parsed_text);
         Ok(Self {
             path: path.to_owned(),
-            on_disk: false,
+            stored: None,
+            style: TextStyle::default(),
             saved: text.clone(),
             draft: Draft::new(text),
             history: History::default(),
@@ -118,19 +123,15 @@ impl Document {
 
     /// Opens a scene file.
     pub fn open(path: &Path) -> Result<Self, AppError> {
-        let text = std::fs::read_to_string(path)
+        let content = std::fs::read_to_string(path)
             .map_err(|why| AppError::new(format!("{} could not be read: {why}", path.display())))?;
-        Ok(Self { on_disk: true, ..Self::new(path, text)? })
-    }
-
-    /// Reads the scene with all its files.
-    pub fn load(&self) -> Result<Loaded<Scene>, AppError> {
-        self.source().load()
+        let (style, text) = TextStyle::split(&content);
+        Ok(Self { stored: Some(content), style, ..Self::new(path, text)? })
     }
 
     /// Returns the data that is needed to read the scene on another thread.
     pub fn source(&self) -> Source {
-        Source { path: self.path.clone(), text: self.draft.text.clone() }
+        Source { path: self.path.clone(), text: self.style.content(&self.draft.text) }
     }
 
     /// The settings of the scene; grooms have no strands.
@@ -175,7 +176,7 @@ impl Document {
 
     /// The path of the file, if it exists.
     pub fn file(&self) -> Option<&Path> {
-        self.on_disk.then_some(&*self.path)
+        self.stored.is_some().then_some(&*self.path)
     }
 
     /// Whether the text differs from the saved file.

@@ -82,7 +82,7 @@ impl Document {
 
     /// The path that named files are relative to.
     pub fn base(&self) -> PathBuf {
-        self.file().map_or_else(new_scene, PathBuf::from)
+        self.path.clone()
     }
 
     /// The same document, all of which counts as an unsaved change.

@@ -139,6 +139,9 @@ impl Shows {
     }
 }
 
+/// What a picture shows: scene and number of the snapshot, the view, and the full size [pixels].
+type Picture = (u64, u64, ViewParameters, [u32; 2]);
+
 /// Renders one view on the CPU.
 pub struct CpuPainter {
     jobs: Sender<Job>,
@@ -146,8 +149,12 @@ pub struct CpuPainter {
     /// Whether a picture is being drawn.
     busy: Arc<AtomicBool>,
     shows: Shows,
-    /// Key of the last requested picture, which is not drawn again while it is the same.
-    shown: Option<(u64, u64, ViewParameters, [u32; 2])>,
+    /// The picture that the window shows now.
+    wanted: Option<Picture>,
+    /// The last requested picture, which is not drawn again while it is the same.
+    requested: Option<Picture>,
+    /// The current picture.
+    drawn: Option<Picture>,
     /// The moment shown by the current picture.
     moment: Option<Arc<Snapshot>>,
     level: usize,
@@ -187,7 +194,9 @@ impl CpuPainter {
             done,
             busy: Arc::default(),
             shows: Shows::new(window),
-            shown: None,
+            wanted: None,
+            requested: None,
+            drawn: None,
             moment: None,
             level: FIRST,
             seen: FIRST,
@@ -231,7 +240,8 @@ impl CpuPainter {
         size: [u32; 2],
     ) {
         let wanted = (snapshot.scene, snapshot.number, *view, size);
-        let same = self.shown == Some(wanted);
+        self.wanted = Some(wanted);
+        let same = self.requested == self.wanted;
         if !same {
             self.moved = Instant::now();
         }
@@ -259,7 +269,7 @@ impl CpuPainter {
                 level,
             };
             self.busy.store(self.jobs.send(job).is_ok(), Relaxed);
-            self.shown = Some(wanted);
+            self.requested = self.wanted;
         } else if same && !rested {
             ctx.request_repaint_after(rest + Duration::from_millis(10));
         }
@@ -270,9 +280,10 @@ impl CpuPainter {
         self.moment.as_ref()
     }
 
-    /// Whether the current picture shows this moment in full quality.
+    /// Whether the current picture shows this moment in full quality, with the view and the size that the window asks for.
     pub fn is_whole(&self, now: &Snapshot) -> bool {
-        self.seen == 0 && self.moment.as_ref().is_some_and(|m| (m.scene, m.number) == (now.scene, now.number))
+        let shows = |(scene, number, ..): &Picture| (*scene, *number) == (now.scene, now.number);
+        self.seen == 0 && self.drawn == self.wanted && self.drawn.as_ref().is_some_and(shows)
     }
 
     /// The shape that shows the last picture at `rect`.
@@ -297,7 +308,8 @@ impl CpuPainter {
         self.pace.tick(level != self.level);
         self.took = if level == self.seen { smooth(self.took, done.took) } else { done.took };
         (self.seen, self.every) = (level, view.every);
-        self.moment = Some(snapshot);
+        // No other picture is requested before this one is finished.
+        (self.moment, self.drawn) = (Some(snapshot), self.requested);
         if level == self.level {
             // The level is refined only if the picture surely stays within the budget, so that it does not
             // oscillate.
@@ -318,5 +330,45 @@ impl CpuPainter {
             (_, every) => format!("at {:.0} % of the size, 1 hair of {every}", 100.0 * scale),
         };
         format!("CPU: {part}, {:.0} ms{}", 1e3 * self.took, self.pace.words())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        document::Document,
+        session::{Action, Session},
+        view::View,
+    };
+
+    #[test]
+    fn a_picture_of_another_size_is_not_whole() {
+        let text = "[builtin]\nstrands = 10\nguides = 5\n";
+        let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
+        let mut session = Session::new(document, 1, None, || ()).unwrap();
+        session.act(Action::Play(false)).unwrap();
+        let wait = |mut done: Box<dyn FnMut() -> bool + '_>| {
+            let tries = (0..12_000).find(|_| {
+                std::thread::sleep(Duration::from_millis(5));
+                done()
+            });
+            assert!(tries.is_some(), "it did not happen within a minute");
+        };
+        wait(Box::new(|| session.latest().is_some()));
+        let (snapshot, mut view) = (session.latest().unwrap(), View::default());
+        view.frame(&session, &snapshot, 1.0);
+        let view = view.view_parameters(&snapshot.stages[0], 1.0).unwrap();
+        let ctx = egui::Context::default();
+        let mut painter = CpuPainter::new(&ctx, None, 1);
+        for size in [[64, 48], [96, 48]] {
+            painter.request(&ctx, &snapshot, 0, &view, size);
+            assert!(!painter.is_whole(&snapshot), "{size:?}: before it is drawn");
+            wait(Box::new(|| {
+                painter.look(&ctx);
+                painter.request(&ctx, &snapshot, 0, &view, size);
+                painter.is_whole(&snapshot)
+            }));
+        }
     }
 }

@@ -4,7 +4,7 @@
 use super::folder::Folder;
 use crate::{
     bake::BakeRequest,
-    document::KINDS,
+    document::{Document, KINDS},
     record::{Kind, RecordFormat, RecordRequest},
     session::Action,
 };
@@ -138,6 +138,10 @@ const RATES: [&str; 8] = ["12", "23.976", "24", "25", "29.97", "30", "50", "60"]
 const NO_FILE: &str = "The desktop's dialog returned no file. If none opened, this desktop has no portal for it \
     (xdg-desktop-portal); use the list above.";
 
+/// What a file that another program changed means.
+const CHANGED: &str = "Another program changed this file since it was read. \"Replace it\" overwrites those changes; open the \
+    file again to see them.";
+
 impl Files {
     /// Opens the dialog with a suggested path.
     pub fn open_dialog(&mut self, what: For, known: Option<&Path>) {
@@ -155,6 +159,15 @@ impl Files {
             (None, name) if folder == current => name.into(),
             (None, name) => folder.join(name).display().to_string(),
         };
+    }
+
+    /// Opens the dialog to save a scene.
+    pub fn open_save_dialog(&mut self, document: &Document) {
+        self.open_dialog(For::Save, document.file());
+        if document.is_changed_on_disk() {
+            // As any other file, it is only replaced by the button `Replace it`.
+            (self.own, self.note) = (None, Some(CHANGED));
+        }
     }
 
     /// Opens the dialog for a bake of a motion of this length [s].
@@ -241,6 +254,7 @@ impl Files {
         let path = PathBuf::from(self.path.trim());
         match what {
             For::Open => Decision::Do(Action::Open(path)),
+            For::Save if self.replaces(what) => Decision::Do(Action::SaveOver(path)),
             For::Save => Decision::Do(Action::Save(Some(path))),
             For::Record(kind) => {
                 Decision::Record(RecordRequest { kind, path, seconds: self.seconds, format: self.format })
@@ -286,7 +300,10 @@ impl Files {
             }
         });
         if what != For::Record(Kind::Still) {
-            ui.add(egui::Slider::new(&mut self.seconds, 0.5..=60.0).suffix(" s").text("Length"));
+            // A length that was typed is checked when the recording starts.
+            let slider =
+                egui::Slider::new(&mut self.seconds, 0.5..=60.0).clamping(egui::SliderClamping::Never);
+            ui.add(slider.suffix(" s").text("Length"));
         }
     }
 

@@ -4,6 +4,7 @@
 use crate::{
     session::{Action, Session},
     snapshot::Snapshot,
+    text::counted,
 };
 use eframe::egui::{self, Ui};
 use egui_plot::{Legend, Line, Plot, PlotPoints};
@@ -109,8 +110,12 @@ impl History {
 pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) {
     let Some(stage) = snapshot.stages.first() else { return };
     let [guides, strands, points, all] = stage.still.counts;
+    let many = |number: usize, noun: &str| counted(number as u64, noun);
     ui.label(format!(
-        "{strands} hairs of {all} points; {guides} simulated with {points} points; {}",
+        "{} of {}; {guides} simulated with {}; {}",
+        many(strands, "hair"),
+        many(all, "point"),
+        many(points, "point"),
         stage.still.instruction_set
     ));
     for (k, stage) in snapshot.stages.iter().enumerate() {
@@ -124,25 +129,26 @@ pub fn figures(ui: &mut Ui, session: &Session, snapshot: &Snapshot, note: &str) 
         let started =
             (m.started_inside_points > 0).then(|| format!(" ({} from the start)", m.started_inside_points));
         ui.label(format!(
-            "{side}stretch {:.2} % mean, {:.2} % worst; {} points{} and {} segments inside{}",
+            "{side}stretch {:.2} % mean, {:.2} % worst; {}{} and {} inside{}",
             100.0 * m.stretch_mean,
             100.0 * m.stretch_max,
-            m.inside_points,
+            many(m.inside_points, "point"),
             started.unwrap_or_default(),
-            m.deep_segments + m.held_segments,
+            many(m.deep_segments + m.held_segments, "segment"),
             volume.unwrap_or_default()
         ));
     }
     if snapshot.reset_strands > 0 {
-        let text = format!("{} strands turned non-finite and were put back to rest", snapshot.reset_strands);
+        let strands = many(snapshot.reset_strands, "strand");
+        let text = format!("{strands} put back to rest after values that were not finite");
         ui.colored_label(ui.visuals().warn_fg_color, text);
     }
     ui.weak(note);
     match session.notes() {
         [] => {}
         notes => {
-            let many = if notes.len() == 1 { "a note".to_owned() } else { format!("{} notes", notes.len()) };
-            ui.weak(format!("{many} on its files: rest the pointer here")).on_hover_text(notes.join("\n"));
+            let text = format!("{} on its files: rest the pointer here", many(notes.len(), "note"));
+            ui.weak(text).on_hover_text(notes.join("\n"));
         }
     }
 }

@@ -9,6 +9,7 @@ use crate::{
     key::Key,
     parameter::{self, Group, Kind, Parameter, describe},
     session::{Action, Session},
+    text::shortened,
 };
 use eframe::egui::{self, RichText, Ui};
 use glam::Vec3;
@@ -19,6 +20,11 @@ use toml_edit::Value;
 const LABEL: f32 = 106.0;
 /// Width of the reset button, for which space is always reserved [points].
 const RESET: f32 = 42.0;
+
+/// Largest height of the list of grooms [points].
+const GROOMS: f32 = 96.0;
+/// Maximum length of a groom's name in the list [characters].
+const LONGEST: usize = 28;
 
 /// Shows all groups. `camera` is the camera of the window; entries that are added to the scene are placed at
 /// its target.
@@ -136,17 +142,27 @@ fn choose(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         });
     }
     if grooms.len() > 1 || groups > 1 {
-        ui.horizontal_wrapped(|ui| {
-            for g in grooms.iter().filter(|_| grooms.len() > 1) {
-                if ui.selectable_label(*g == groom, document.groom_name(*g)).clicked() {
-                    actions.push(Action::Choose(*g, 0));
+        let list =
+            egui::ScrollArea::vertical().id_salt("grooms").max_height(GROOMS).auto_shrink([false, true]);
+        list.show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                for g in grooms.iter().filter(|_| grooms.len() > 1) {
+                    let name = document.groom_name(*g);
+                    let short = shortened(&name, LONGEST);
+                    let mut button = ui.selectable_label(*g == groom, &*short);
+                    if short != name {
+                        button = button.on_hover_text(&name);
+                    }
+                    if button.clicked() {
+                        actions.push(Action::Choose(*g, 0));
+                    }
                 }
-            }
-            for g in (0..groups).filter(|_| groups > 1) {
-                if ui.selectable_label(g == group, format!("Group {}", g + 1)).clicked() {
-                    actions.push(Action::Choose(groom, g));
+                for g in (0..groups).filter(|_| groups > 1) {
+                    if ui.selectable_label(g == group, format!("Group {}", g + 1)).clicked() {
+                        actions.push(Action::Choose(groom, g));
+                    }
                 }
-            }
+            });
         });
     }
 }

@@ -26,7 +26,7 @@ pub fn show(ctx: &egui::Context, found: &mut Vec<FoundScene>, actions: &mut Vec<
                     stays = false;
                 }
                 let name = scene.scene.path.file_name().unwrap_or_default().to_string_lossy();
-                let name = if scene.scene.on_disk { name } else { "a scene without a file".into() };
+                let name = if scene.scene.stored.is_some() { name } else { "a scene without a file".into() };
                 ui.label(format!("{name}, {} ago", age(scene.age)))
                     .on_hover_text(scene.scene.path.display().to_string());
             });

@@ -2,8 +2,9 @@
 
 use crate::{
     player::{CachedFrames, RATE},
-    session::{Action, Session},
+    session::{Action, LAST_FRAME, Session},
     snapshot::Snapshot,
+    text::counted,
 };
 use eframe::egui::{self, Color32, Rect, Sense, Ui, pos2, vec2};
 
@@ -29,13 +30,14 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: &Snapshot, actions: &mut V
         let mut last = motion.unwrap_or(FEWEST).max(frame);
         last = last.max(snapshot.cached.frames.last().copied().unwrap_or(0));
         let range = session.range();
-        let (mut from, mut to) = range.map_or((number(0), number(last)), |(a, b)| (number(a), number(b)));
+        let (first, end) = range.unwrap_or((0, motion.unwrap_or(last)));
+        let (mut from, mut to) = (number(first), number(end));
         last = last.max(to - 1);
         let mut looped = session.repeats();
         if ui.checkbox(&mut looped, "Loop").on_hover_text(LOOP).changed() {
             actions.push(Action::Repeat(looped));
         }
-        let most = from + 1..=number(100_000);
+        let most = from + 1..=number(motion.unwrap_or(LAST_FRAME));
         let first = egui::DragValue::new(&mut from).range(1..=to.saturating_sub(1).max(1)).prefix("from ");
         let mut changed = ui.add(first).on_hover_text("First frame of the loop").changed();
         changed |= ui
@@ -113,5 +115,5 @@ fn bar(
 /// How many frames are cached, and the memory for it.
 pub fn cache_note(cached: &CachedFrames) -> String {
     let [used, limit] = cached.bytes.map(|bytes| bytes.div_ceil(1 << 20));
-    format!("{} frames cached in {used} of {limit} MiB", cached.frames.len())
+    format!("{} cached in {used} of {limit} MiB", counted(cached.frames.len() as u64, "frame"))
 }

@@ -2,6 +2,7 @@
 //!
 //! [`VERBS`] lists what a line can be; docs/window.md shows the same list.
 
+mod arguments;
 mod verbs;
 
 pub use verbs::{VERBS, Verb};
@@ -152,10 +153,68 @@ mod tests {
             "clip a.mp4",
             "still",
             "overlay moon on",
+            "overlay slice on off",
+            "compare on off",
+            "wait -5",
+            "wait 1.9",
+            "wait 5 6",
+            "wait 1e19",
+            "wait 99999999999999999999",
+            "wait nan",
+            "seek 0",
+            "seek -3",
+            "seek 3 4",
+            "speed 0",
+            "speed 100",
+            "speed nan",
+            "speed 1 2",
+            "range 5",
+            "range 5 5",
+            "range 1.5 3",
+            "range 1 3 5",
+            "size 10.7 99.2",
+            "size 640",
+            "size -1 5",
+            "size 640 480 3",
+            "drag 0 0 1 1 1.5",
+            "drag 0 0 1 1 0",
+            "drag 0 0 inf 1 5",
+            "bake a.##.hair 0",
+            "bake a.##.hair 1.5",
+            "clip a.mp4 inf",
+            "clip a.mp4 nan",
+            "pictures a.##.png 0",
+            "turntable a.mp4 -1",
+            "shot a.bmp",
+            "shot a",
+            "set material.\"my hair.bend 3",
+            "set material.\"my hair\".bend",
         ] {
             let error = Script::parse("s.txt", &format!("play\n# no\n\n{wrong}")).unwrap_err().to_string();
             assert!(error.starts_with("s.txt, line 4: "), "{wrong}: {error}");
         }
+    }
+
+    #[test]
+    fn an_argument_outside_its_range_is_refused_with_the_range() {
+        for (wrong, range) in [
+            ("wait 1e19", "whole number from 0 to 1000000"),
+            ("seek 0", "whole number from 1 to 1000000"),
+            ("speed 9", "number from 0.05 to 4"),
+        ] {
+            let error = Script::parse("s.txt", wrong).unwrap_err().to_string();
+            assert!(error.contains(range) && !(range.starts_with('n') && error.contains("whole")), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_key_may_have_quoted_names_with_spaces() {
+        let script = Script::parse("s.txt", "set material.\"my hair.2\".bend [1, 2]").unwrap();
+        let Some((_, Line::Set(key, Some(value)))) = script.lines.front() else { panic!("{script:?}") };
+        assert_eq!(
+            (key.to_string().as_str(), value.to_string().as_str()),
+            ("material.\"my hair.2\".bend", "[1, 2]")
+        );
     }
 
     #[test]

@@ -1,10 +1,8 @@
 //! The commands of a script: their forms, their descriptions, and how they are read.
 
-use super::Line;
-use crate::{record::Kind, view::Tool};
-use glam::Vec2;
+use super::{Line, arguments::Arguments};
+use crate::{key::split_key, record::Kind, view::Tool};
 use hairspring_scene::stage::Value;
-use std::path::PathBuf;
 
 /// A command of a script.
 pub struct Verb {
@@ -16,7 +14,7 @@ pub struct Verb {
     pub example: &'static str,
     /// What it does.
     pub does: &'static str,
-    read: fn(Rest<'_>) -> Result<Line, String>,
+    read: fn(Arguments<'_>) -> Result<Line, String>,
 }
 
 impl Verb {
@@ -33,7 +31,7 @@ const fn verb(
     arguments: &'static str,
     example: &'static str,
     does: &'static str,
-    read: fn(Rest<'_>) -> Result<Line, String>,
+    read: fn(Arguments<'_>) -> Result<Line, String>,
 ) -> Verb {
     Verb { name, arguments, example, does, read }
 }
@@ -45,7 +43,7 @@ pub const VERBS: &[Verb] = &[
         "STEPS",
         "30",
         "waits for this number of steps of 1/60 s; while paused, it takes them",
-        |r| Ok(Line::Wait(r.number()?.max(0.0) as u64)),
+        |r| Ok(Line::Wait(r.count("a number of steps", 0)?.into())),
     ),
     verb("play", "", "", "plays", |_| Ok(Line::Play(true))),
     verb("pause", "", "", "pauses", |_| Ok(Line::Play(false))),
@@ -56,7 +54,7 @@ pub const VERBS: &[Verb] = &[
         "FRAME",
         "30",
         "pauses, and goes to the cached frame nearest to this one; frame 1 is at time 0",
-        |r| Ok(Line::Seek((r.number()?.max(1.0) as u64) - 1)),
+        |r| Ok(Line::Seek(u64::from(r.count("a frame", 1)?) - 1)),
     ),
     verb(
         "range",
@@ -67,19 +65,12 @@ pub const VERBS: &[Verb] = &[
             if r.text == "all" {
                 return Ok(Line::Range(None));
             }
-            match r.numbers()?[..] {
-                [first, last] if first >= 1.0 && last > first => {
-                    Ok(Line::Range(Some((first as u64 - 1, last as u64 - 1))))
-                }
-                _ => {
-                    Err("`range` needs the first and a later last frame, such as `range 10 60`, or `all`"
-                        .into())
-                }
-            }
+            let [first, last] = r.range()?.map(|frame| u64::from(frame) - 1);
+            Ok(Line::Range(Some((first, last))))
         },
     ),
     verb("speed", "X", "0.5", "sets the seconds of the scene that play in a second", |r| {
-        Ok(Line::Speed(r.number()?))
+        Ok(Line::Speed(r.speed()?))
     }),
     verb(
         "set",
@@ -87,7 +78,10 @@ pub const VERBS: &[Verb] = &[
         "groom[0].look.roughness 0.5",
         "writes a value of the scene file by its key",
         |r| {
-            let (key, value) = r.two("a key and a value")?;
+            let (key, value) = split_key(r.text);
+            if value.is_empty() {
+                return Err("`set` needs a key and a value".into());
+            }
             let value =
                 value.parse().map_err(|_| format!("'{value}' is not a valid value of a scene file"))?;
             Ok(Line::Set(key.parse()?, Some(value)))
@@ -97,7 +91,7 @@ pub const VERBS: &[Verb] = &[
         "unset",
         "KEY",
         "wind.gust",
-        "removes a value of the scene file, so that its default applies",
+        "removes a value that the scene file has, so that its default applies",
         |r| Ok(Line::Set(r.text.parse()?, None)),
     ),
     verb("undo", "", "", "undoes one step", |_| Ok(Line::Undo)),
@@ -106,7 +100,13 @@ pub const VERBS: &[Verb] = &[
     verb("open", "FILE", "shot.toml", "opens a file as *File > Open* does, without asking to save", |r| {
         Ok(Line::Open(r.path()?))
     }),
-    verb("save", "FILE", "shot.toml", "saves the scene", |r| Ok(Line::Save(r.path()?))),
+    verb(
+        "save",
+        "FILE",
+        "shot.toml",
+        "saves the scene that is selected for changes, as `.toml`; fails if another program changed its file",
+        |r| Ok(Line::Save(r.path()?)),
+    ),
     verb(
         "hand",
         "TOOL",
@@ -160,9 +160,9 @@ pub const VERBS: &[Verb] = &[
         "slice on",
         "shows or hides an overlay: `hair`, `body`, `colliders`, `slice`, `volume`, `frames`, `roots`, `handles`",
         |r| {
-            let (name, state) = r.two("a name and on or off")?;
+            let (name, on) = r.named_switch()?;
             let known = SWITCHES.iter().find(|known| **known == name);
-            Ok(Line::Switch(known.ok_or_else(|| format!("'{name}' is no overlay"))?, on(state)?))
+            Ok(Line::Switch(known.ok_or_else(|| format!("'{name}' is no overlay"))?, on))
         },
     ),
     verb("compare", "on|off", "on", "opens or closes the second scene", |r| r.switch("compare")),
@@ -180,10 +180,7 @@ pub const VERBS: &[Verb] = &[
         r.record(Kind::Turntable)
     }),
     verb("size", "WIDTH HEIGHT", "1920 1080", "sets the size of recordings in pixels", |r| {
-        match r.numbers()?[..] {
-            [width, height] => Ok(Line::Size([width as u32, height as u32])),
-            _ => Err("`size` needs a width and a height, such as `size 1920 1080`".into()),
-        }
+        Ok(Line::Size(r.size()?))
     }),
     verb("rate", "RATE", "24", "sets the frames per second of recordings and bakes", |r| {
         Ok(Line::Rate(r.text.parse()?))
@@ -192,16 +189,14 @@ pub const VERBS: &[Verb] = &[
         Ok(Line::Export(r.path()?))
     }),
     verb("bake", "FILE LAST", "hair.####.hair 60", "bakes the frames from 1 to this one, from time 0", |r| {
-        let (file, last) = r.last("a file and the last frame")?;
-        let number = last.parse().ok().filter(|last| *last > 0);
-        Ok(Line::Bake(file, [1, number.ok_or_else(|| format!("'{last}' is no number of a frame"))?]))
+        r.bake()
     }),
     verb(
         "shot",
         "FILE",
         "window.png",
         "writes a picture of the window; if paused, once the hair is drawn in full quality",
-        |r| Ok(Line::Shot(r.path()?)),
+        |r| Ok(Line::Shot(r.picture()?)),
     ),
     verb("pace", "", "", "prints the renderer, the pictures per second, and the time of a step", |_| {
         Ok(Line::Pace)
@@ -222,74 +217,5 @@ pub(super) fn read(line: &str) -> Result<Line, String> {
     if verb.arguments.is_empty() && !text.is_empty() {
         return Err(format!("`{word}` takes no argument, but found '{text}'"));
     }
-    (verb.read)(Rest { word, text })
-}
-
-/// What follows the first word of a line.
-#[derive(Clone, Copy)]
-struct Rest<'a> {
-    word: &'a str,
-    text: &'a str,
-}
-
-impl<'a> Rest<'a> {
-    fn numbers(self) -> Result<Vec<f32>, String> {
-        let read = self.text.split_whitespace().map(|n| n.parse::<f32>().ok().filter(|n| n.is_finite()));
-        read.collect::<Option<_>>().ok_or_else(|| format!("'{}' are not numbers", self.text))
-    }
-
-    fn number(self) -> Result<f32, String> {
-        self.numbers()?.first().copied().ok_or_else(|| format!("`{}` needs a number", self.word))
-    }
-
-    /// The first word, and what follows it.
-    fn two(self, what: &str) -> Result<(&'a str, &'a str), String> {
-        let (first, second) = self
-            .text
-            .split_once(char::is_whitespace)
-            .ok_or_else(|| format!("`{}` needs {what}", self.word))?;
-        Ok((first, second.trim()))
-    }
-
-    fn path(self) -> Result<PathBuf, String> {
-        match self.text {
-            "" => Err(format!("`{}` needs a file", self.word)),
-            name => Ok(PathBuf::from(name)),
-        }
-    }
-
-    /// Two places in the picture, and a number of frames.
-    fn path_of_pointer(self) -> Result<(Vec2, Vec2, u32), String> {
-        match self.numbers()?[..] {
-            [a, b, c, d, frames] => Ok((Vec2::new(a, b), Vec2::new(c, d), frames.max(1.0) as u32)),
-            _ => Err(format!("`{}` needs five numbers: from x y, to x y, frames", self.word)),
-        }
-    }
-
-    fn record(self, kind: Kind) -> Result<Line, String> {
-        let (file, seconds) = self.last("a file and seconds")?;
-        let seconds = seconds.parse().map_err(|_| format!("'{seconds}' is no number of seconds"))?;
-        Ok(Line::Record(kind, file, seconds))
-    }
-
-    /// A file, whose name may have spaces, and the last word.
-    fn last(self, what: &str) -> Result<(PathBuf, &'a str), String> {
-        let (file, last) = self
-            .text
-            .rsplit_once(char::is_whitespace)
-            .ok_or_else(|| format!("`{}` needs {what}", self.word))?;
-        Ok((file.trim().into(), last))
-    }
-
-    fn switch(self, name: &'static str) -> Result<Line, String> {
-        Ok(Line::Switch(name, on(self.text)?))
-    }
-}
-
-fn on(state: &str) -> Result<bool, String> {
-    match state {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        other => Err(format!("'{other}' is neither on nor off")),
-    }
+    (verb.read)(Arguments { word, text })
 }

@@ -47,8 +47,10 @@ pub enum Action {
     Open(PathBuf),
     /// Opens a scene that was kept for a crash.
     Recover(FoundScene),
-    /// Saves the scene; `None` uses its current path.
+    /// Saves the scene whose parameters are shown; `None` uses its current path.
     Save(Option<PathBuf>),
+    /// Like `Save`, but also replaces a file that another program changed.
+    SaveOver(PathBuf),
     /// Opens a second scene for comparison, which starts as a copy, or closes it.
     Compare(bool),
     /// Selects whether parameters are those of the second scene.

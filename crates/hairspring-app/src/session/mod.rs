@@ -2,14 +2,16 @@
 //! a user, a script or a test is an [`Action`].
 
 mod action;
+mod files;
 mod restart;
 mod scene;
 
 pub use action::Action;
+pub use files::Side;
 
 use crate::{
     AppError, differ,
-    document::{Change, Document, Way, new_scene, replaces_scene},
+    document::{Change, Document, Way, new_scene},
     edit,
     player::{Order, Player, RATE},
     reading::Reading,
@@ -23,9 +25,16 @@ use hairspring::{
 use hairspring_scene::stage::{FrameRate, Value};
 use hairspring_view::gpu::Gpu;
 use std::{
+    ops::RangeInclusive,
     path::PathBuf,
     sync::{Arc, Mutex, PoisonError},
 };
+
+/// Playback speeds [scene seconds per second].
+pub const SPEEDS: RangeInclusive<f32> = 0.05..=4.0;
+
+/// Last frame of a range in a scene without a motion, counted from 0 at time 0.
+pub const LAST_FRAME: u64 = 100_000;
 
 /// The scene, the compared scene and the simulation.
 pub struct Session {
@@ -50,6 +59,8 @@ pub struct Session {
     held: bool,
     /// Notes from reading the last scene.
     notes: Vec<String>,
+    /// The files that the open scenes name.
+    files: Vec<PathBuf>,
     /// Length of the scene's motion [s].
     length: Option<f64>,
     /// Names of the body's joints.
@@ -106,6 +117,7 @@ impl Session {
             chosen: (0, 0),
             held: false,
             notes: Vec::new(),
+            files: Vec::new(),
             length: None,
             joints: Vec::new(),
             captions: [String::new(), String::new()],
@@ -134,7 +146,11 @@ impl Session {
                 self.player.send(Order::Reset);
             }
             Action::Speed(speed) => {
-                self.speed = speed.clamp(0.05, 4.0);
+                if !SPEEDS.contains(&speed) {
+                    let (least, most) = (SPEEDS.start(), SPEEDS.end());
+                    return Err(AppError::new(format!("a speed of {speed} is not from {least} to {most}")));
+                }
+                self.speed = speed;
                 self.player.send(Order::Speed(self.speed));
             }
             Action::Repeat(repeat) => {
@@ -142,7 +158,8 @@ impl Session {
                 self.send_range();
             }
             Action::Range(range) => {
-                self.range = range.filter(|(first, last)| first < last);
+                self.check_range(range)?;
+                self.range = range;
                 self.send_range();
             }
             Action::Seek(frame) => {
@@ -184,11 +201,16 @@ impl Session {
                 found.discard();
             }
             Action::Save(path) => {
-                let known = self.document.file().map(PathBuf::from);
+                let known = self.edited().file().map(PathBuf::from);
                 let path = path.or(known).ok_or_else(|| {
                     AppError::new("the scene has no file yet: choose one, such as scene.toml")
                 })?;
-                self.document.save(&path)?;
+                self.check_save(&path)?;
+                self.edited_mut().save(&path)?;
+            }
+            Action::SaveOver(path) => {
+                self.check_save(&path)?;
+                self.edited_mut().save_over(&path)?;
             }
             Action::Compare(on) => {
                 self.second = on
@@ -235,6 +257,21 @@ impl Session {
         };
     }
 
+    /// Refuses a range that is empty or beyond the timeline.
+    fn check_range(&self, range: Option<(u64, u64)>) -> Result<(), AppError> {
+        let end = self.last_frame().unwrap_or(LAST_FRAME);
+        match range {
+            // As shown, frame 1 is at time 0.
+            Some((first, last)) if first >= last || last > end => Err(AppError::new(format!(
+                "the range from frame {} to {} is not one of at least two frames from 1 to {}",
+                first + 1,
+                last + 1,
+                end + 1
+            ))),
+            _ => Ok(()),
+        }
+    }
+
     fn send_range(&self) {
         let motion = self.last_frame().map(|last| (0, last));
         self.player.send(Order::Loop(self.range.or(motion).filter(|_| self.repeat)));
@@ -278,17 +315,7 @@ impl Session {
         self.second.as_mut().filter(|_| self.on_second).unwrap_or(&mut self.document)
     }
 
-    /// Whether this action leaves a scene whose changes are not saved.
-    pub fn leaves_changes(&self, action: &Action) -> bool {
-        let leaves = match action {
-            Action::New(_) | Action::Recover(_) => true,
-            Action::Open(path) => replaces_scene(path),
-            _ => false,
-        };
-        leaves && self.document.is_changed()
-    }
-
-    /// The document that is saved.
+    /// The document on the left, or the only one.
     pub fn document(&self) -> &Document {
         &self.document
     }

@@ -28,16 +28,14 @@ impl Session {
     /// Swaps the open document with another one, if its scene can be read.
     fn change_with(&mut self, other: &mut Document) -> Result<(), AppError> {
         std::mem::swap(&mut self.document, other);
-        let second = self.second.take();
+        let (second, range) = (self.second.take(), self.range.take());
         if let Err(why) = self.begin() {
             std::mem::swap(&mut self.document, other);
-            self.second = second;
+            (self.second, self.range) = (second, range);
             return Err(why);
         }
         self.on_second = false;
         self.chosen = (0, 0);
-        self.range = None;
-        self.send_range();
         self.opened += 1;
         Ok(())
     }
@@ -66,7 +64,8 @@ impl Session {
 
     /// Reads the scene and the compared one, and starts at time 0.
     pub(super) fn begin(&mut self) -> Result<(), AppError> {
-        let read = both(&self.document, self.second.as_ref())?;
+        let second = self.second.as_ref().map(Document::source);
+        let read = both(&self.document.source(), second.as_ref())?;
         self.reading = None;
         self.play(read);
         Ok(())
@@ -99,9 +98,14 @@ impl Session {
     }
 
     /// Starts the scenes that were read, at time 0.
-    pub(super) fn play(&mut self, (loaded, second): Read) {
+    pub(super) fn play(&mut self, Read { first: loaded, second, files }: Read) {
+        self.files = files;
         self.length = loaded.value.motion_duration().filter(|d| *d > f64::from(STEP));
         self.notes = loaded.notes;
+        if self.check_range(self.range).is_err() {
+            self.range = None;
+            self.notes.push("the loop is the whole motion again, which is shorter than its range".into());
+        }
         let joints = loaded.value.body.iter().flat_map(|body| &body.joints);
         self.joints = joints.map(|joint| joint.name.clone()).collect();
         (self.held, self.stopped) = (false, false);

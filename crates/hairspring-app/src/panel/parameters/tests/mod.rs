@@ -343,3 +343,14 @@ fn the_current_view_is_written_as_the_scene_camera_in_one_undo_step() {
     panel.session.borrow_mut().act(Action::Undo).unwrap();
     assert_eq!(panel.text(), HEAD);
 }
+
+#[test]
+fn many_long_groom_names_leave_room_for_the_parameters() {
+    let long = "A name that an exporter made from the whole path of the groom in its own scene, number";
+    let groom = |k: usize| format!("[[groom]]\nname = \"{long} {k}\"\n[groom.grow]\nstrands = 5\n");
+    let text: String = (0..20).map(groom).collect();
+    let panel = panel(&format!("{HEAD}{text}"), "");
+    let search = panel.harness.query_all_by_role(egui::accesskit::Role::TextInput).next().unwrap().rect();
+    assert!(search.top() < 150.0, "the list of grooms fills the panel: {search:?}");
+    assert!(*panel.width.borrow() < 400.0);
+}
