@@ -125,6 +125,18 @@ def test_a_wedge_simulates_all_combinations_and_keeps_what_is_complete(tmp_path,
     assert code == 0 and error.count(": kept") == 4
 
 
+@pytest.mark.parametrize("options, last", [([], 7), (["--frames", "2-4"], 4)])
+def test_the_picture_is_the_last_frame_of_the_clip(tmp_path, program, options, last):
+    # A quarter of a second, which has another number of frames at the default rate.
+    scene = shot(tmp_path, "[clip]\nkeys = [{ time = 0.0 }, { time = 0.25, rotation = [0.0, 20.0, 0.0] }]\n")
+    out = tmp_path / "w"
+    rate = ["--fps", "24", "--size", "64x64"]
+    code, _, error = program("wedge", scene, *options, *rate, "-o", out)
+    assert code == 0, error
+    assert program("render", scene, "-o", tmp_path / "last.png", "--frames", last, *rate)[0] == 0
+    assert (out / "shot" / "still.png").read_bytes() == (tmp_path / "last.png").read_bytes()
+
+
 def test_a_wedge_notices_a_changed_groom(tmp_path, program):
     scene, groom = tmp_path / "shot.toml", tmp_path / "hair.data"
     scene.write_text('[[groom]]\nfile = "hair.data"\nscale = 1.0\n')

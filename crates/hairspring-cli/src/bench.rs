@@ -108,8 +108,8 @@ pub struct Options {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["table", "strands", "points", "substeps", "simd", "model", "integrator", "high_quality", "device", "hair_hair", "head", "wind"])]
     scene: Option<PathBuf>,
 
-    /// Hold the scene in the pose of its first frame, without wind or hands
-    #[arg(long, requires = "scene")]
+    /// Hold the scene of --scene in the pose of its first frame, without wind or hands
+    #[arg(long)]
     rest: bool,
 
     /// Print the figures as JSON
@@ -153,6 +153,10 @@ impl Times {
 /// Runs the command.
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let Options { strands, points, frames, substeps, .. } = *options;
+    // Clap does not require an argument that another one excludes.
+    if options.rest && options.scene.is_none() {
+        return Err(Fault::Usage("--rest needs a scene to hold; add --scene FILE".into()));
+    }
     known("integrator", &options.integrator, &Integrator::ALL.map(Integrator::name))?;
     known("model", &options.model, &Model::ALL.map(Model::name))?;
     let integrator = Integrator::ALL.into_iter().find(|i| i.name() == options.integrator).unwrap_or_default();
@@ -258,6 +262,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "deep_segments": measure.deep_segments,
             "segment_depth_m": measure.segment_depth,
             "segment_depth_m_ever": segment_ever,
+            "surface_depth_m": measure.surface_depth,
             "held_segments": measure.held_segments,
             "held_depth_m": measure.held_depth,
             "volume": simulation.volume().map(|v| json!({

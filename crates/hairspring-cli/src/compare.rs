@@ -17,16 +17,16 @@ use std::path::PathBuf;
 /// sides: speed, stretch, depth, energy, time per frame, and the distance of their points if they have the
 /// same strands.
 ///
-/// Integrators (--methods): each one plays the scene: is it stable, how far do segments stretch, and what
-/// does a step cost? Strands of the scene swing freely without air, damping or a body: how much of the energy
-/// is kept? A few of them swing with steps of different lengths: which is the longest stable step? The report
-/// explains each method with its equations, and shows the scene at the same moments side by side. Without a
-/// scene, it is a head of straight hair that nods, turns and shakes.
+/// Integrators (--methods): runs the scene with each integrator and reports stability, stretch and cost per
+/// step. Strands of the scene also swing freely without air, damping or a body, which gives the share of the
+/// energy that is kept. A few of them swing with steps of different lengths, which gives the longest stable
+/// step. The report explains each method with its equations, and shows the scene at the same moments side by
+/// side. Without a scene, it is a head of straight hair that nods, turns and shakes.
 #[derive(Parser)]
 #[command(after_help = after_help())]
 pub struct Options {
-    /// A scene (.toml), or a groom (.hair, .tfx, .data, .csv, .ply) that hangs still under gravity [default with
-    /// --methods: the built-in head]
+    /// A scene (.toml), or a groom (.hair, .tfx, .data, .csv, .ply, or lines in .obj, .glb and .gltf; .usd and .abc with the
+    /// Python package) that hangs still under gravity [default with --methods: the built-in head]
     #[arg(value_name = "A", required_unless_present = "methods")]
     a: Option<PathBuf>,
 

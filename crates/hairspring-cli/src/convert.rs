@@ -12,7 +12,9 @@ use hairspring_io::{Format, read_groom, write_groom};
 use std::path::PathBuf;
 
 /// Converts a groom between the formats .hair, .tfx and .data; the file extension selects the format. Grooms are also read
-/// from .csv and .ply files, and from the lines of .obj and .glb files.
+/// from .csv and .ply files, and from the lines of .obj, .glb and .gltf files.
+///
+/// A .tfx file needs the same number of points in every strand.
 ///
 /// The output is in meters, Y up, and repaired: it has no segment of zero length and no value that is not
 /// finite, and every strand has at least three points. Standard error reports what was repaired, guessed or
@@ -48,7 +50,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if units.reverse {
         loaded.value.reverse();
     }
-    let lost = write_groom(to, &loaded.value).map_err(Fault::writing)?;
+    let lost = write_groom(to, &loaded.value).map_err(Fault::writing_groom)?;
     lost.iter().for_each(|l| console.note(l));
     print_line(format_args!(
         "wrote    {} ({} strands, {} points)",

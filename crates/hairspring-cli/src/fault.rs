@@ -62,6 +62,14 @@ impl Fault {
             _ => Self::Unwritable(error.to_string()),
         }
     }
+
+    /// Converts an error of writing a groom. Strands that its format cannot hold are content of the input.
+    pub fn writing_groom(error: FileError) -> Self {
+        match error {
+            FileError::Unwritable { .. } => Self::Content(error.to_string()),
+            _ => Self::writing(error),
+        }
+    }
 }
 
 impl From<OutputError> for Fault {
@@ -80,7 +88,7 @@ impl From<FrameError> for Fault {
     fn from(error: FrameError) -> Self {
         match error {
             FrameError::NotFinite { .. } => Self::Scene(error.to_string()),
-            FrameError::File(error) => Self::writing(error),
+            FrameError::File(error) => Self::writing_groom(error),
         }
     }
 }

@@ -40,19 +40,24 @@ pub struct Film {
 }
 
 impl Film {
-    /// Starts writing to `sinks`.
-    pub fn new(mut sinks: Vec<Sink>) -> Self {
+    /// Starts writing to `sinks`. There is an error if the system has no more threads.
+    pub fn new(mut sinks: Vec<Sink>) -> Result<Self, Fault> {
         // One frame waits while another is written. Memory use stays small, and a slow disk slows the run
         // down instead of filling memory.
         let (jobs, todo) = sync_channel(1);
         let (done, spare) = channel();
-        let thread = std::thread::spawn(move || {
+        let thread = std::thread::Builder::new().spawn(move || {
             let outcome = work(&mut sinks, todo, &done);
             // Also after an error or an interrupt, so that finished pictures count.
             let listed = sinks.iter_mut().try_for_each(Sink::list);
             outcome.and_then(|busy| listed.map(|()| busy))
         });
-        Self { jobs: Some(jobs), spare, thread: Some(thread) }
+        let thread = thread.map_err(|e| {
+            Fault::Lacking(format!(
+                "the thread that writes frames could not be started: {e}; free memory or threads"
+            ))
+        })?;
+        Ok(Self { jobs: Some(jobs), spare, thread: Some(thread) })
     }
 
     /// Queues a frame for writing.

@@ -105,10 +105,10 @@ pub fn background(text: &str) -> Result<Background, String> {
     Background::ALL.into_iter().find(|b| b.name() == text).ok_or(format!("expected one of {names}"))
 }
 
-/// Parses a duration of 0 to 600 [s].
-pub fn duration(text: &str) -> Result<f32, String> {
-    let number = text.parse::<f32>().ok().filter(|n| (0.0..=600.0).contains(n));
-    number.ok_or_else(|| "expected a number of seconds from 0 to 600".into())
+/// Parses the duration of a pre-roll, 0 to 60 [s].
+pub fn preroll(text: &str) -> Result<f32, String> {
+    let number = text.parse::<f32>().ok().filter(|n| (0.0..=60.0).contains(n));
+    number.ok_or_else(|| "expected a number of seconds from 0 to 60".into())
 }
 
 /// Parses a number above 0.

@@ -29,7 +29,7 @@ use std::path::{Path, PathBuf};
 /// `joint_positions_m` are the joints of a body at rest, or of a motion in its first frame, and
 /// `part_bounds_m` two corners of the box around each part, in the order of `joints` and `parts`. For the
 /// grooms of a scene with a body, `root_distance_m` is the median and the largest distance of a root from the
-/// skin.
+/// skin. `simulated` is the number of strands of a groom that are simulated.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
@@ -37,7 +37,8 @@ Examples:
   hairspring info ponytail.tfx --scale 0.0025 --json
   hairspring info robot.glb")]
 pub struct Options {
-    /// A groom (.hair, .tfx, .data, .csv, .ply, or lines in .obj and .glb), body (.glb, .gltf, .obj, .tfxmesh), motion (.bvh), bones (.tfxbone) or scene (.toml)
+    /// A groom (.hair, .tfx, .data, .csv, .ply, or lines in .obj, .glb and .gltf), body (.glb, .gltf, .vrm, .obj, .tfxmesh),
+    /// motion (.bvh), point cache (.pc2), bones (.tfxbone) or scene (.toml); .usd and .abc with the Python package
     #[arg(value_name = "FILE")]
     file: PathBuf,
 
@@ -76,7 +77,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let wrong = |e| Fault::reading(e, path);
     let format = Format::of(path).ok_or_else(|| {
         Fault::Usage(format!(
-            "{}: unknown extension; expected .hair, .tfx, .data, .glb, .gltf, .obj, .tfxmesh, .tfxbone, .bvh, .csv, .ply, .pc2, .usd, .abc or .toml",
+            "{}: unknown extension; expected .hair, .tfx, .data, .glb, .gltf, .vrm, .obj, .tfxmesh, .tfxbone, .bvh, .csv, .ply, .pc2, .usd, .abc or .toml",
             path.display()
         ))
     })?;
@@ -165,17 +166,9 @@ fn groom(groom: &Groom, repairs: &Repairs) -> Value {
         "bounds_m": bounds(groom.bounds()),
         "repaired": repairs.total(),
         "groups": groom.groups.iter().max().map_or(1, |g| u32::from(*g) + 1),
-        "guides": guides(groom),
+        "guides": if groom.guides.is_empty() { 0 } else { Guides::FromGroom.simulated(groom).len() },
         "colors": !groom.colors.is_empty(),
     })
-}
-
-/// Number of strands that the file names as guides.
-fn guides(groom: &Groom) -> usize {
-    let mut used: Vec<u32> = groom.guides.iter().flat_map(|g| g.guides).collect();
-    used.sort_unstable();
-    used.dedup();
-    used.len()
 }
 
 fn names(body: &Body) -> Value {
@@ -235,11 +228,7 @@ fn scene(scene: &Scene, repairs: &Repairs) -> Value {
                 let distance = SkinDistance::of(&g.groom, &body.mesh);
                 found["root_distance_m"] = json!(distance.map(|d| [d.median, d.max]));
             }
-            found["simulated"] = match g.guides {
-                Guides::All => json!("all"),
-                Guides::FromGroom => json!("file"),
-                Guides::Count(n) => json!(n),
-            };
+            found["simulated"] = json!(g.guides.simulated(&g.groom).len());
             found
         })
         .collect();

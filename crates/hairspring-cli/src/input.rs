@@ -62,15 +62,16 @@ impl From<Units> for ReadOptions {
 /// The input of a simulation and the settings that override it.
 #[derive(Args)]
 pub struct Input {
-    /// A scene (.toml), or a groom (.hair, .tfx, .data, .csv, .ply) that hangs still under gravity
+    /// A scene (.toml), or a groom (.hair, .tfx, .data, .csv, .ply, or lines in .obj, .glb and .gltf; .usd and .abc with the
+    /// Python package) that hangs still under gravity
     #[arg(value_name = "SCENE|GROOM")]
     pub path: PathBuf,
 
     #[command(flatten)]
     pub units: Units,
 
-    /// Strands to simulate in each groom; the others follow. A number, `all`, or `file` for the guides that
-    /// the file names [default: from the scene, otherwise 2000]
+    /// Strands to simulate in each groom, at least one for each group; the others follow. A number, `all`, or `file` for
+    /// the guides that the file names [default: from the scene, otherwise 2000]
     #[arg(long, value_name = "N|all|file", value_parser = frames::guides)]
     pub guides: Option<Guides>,
 
@@ -160,7 +161,7 @@ impl Input {
 /// The error for a file that is neither a scene nor a groom.
 pub fn unknown_extension(path: &Path) -> Fault {
     Fault::Usage(format!(
-        "{}: unknown extension; a scene is read from .toml, a groom from .hair, .tfx, .data, .csv or .ply",
+        "{}: unknown extension; a scene is read from .toml, a groom from .hair, .tfx, .data, .csv, .ply, .obj, .glb or .gltf",
         path.display()
     ))
 }

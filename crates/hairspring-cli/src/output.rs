@@ -3,10 +3,7 @@
 use crate::fault::Fault;
 use hairspring_io::Inputs;
 use hairspring_view::sequence_path;
-use std::{
-    collections::HashSet,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 /// The path of frame `number`: `#` signs are replaced by the number. A name without them is returned as it
 /// is.
@@ -41,6 +38,14 @@ pub fn try_folder(path: &Path) -> Result<(), Fault> {
     })
 }
 
+/// Checks the name and the folder of a report. A name of another kind is likely to be that of a scene.
+pub fn check_report(path: &Path) -> Result<(), Fault> {
+    if !matches!(extension(path).as_str(), "html" | "htm") {
+        return Err(Fault::Usage(format!("{}: a report is a .html file; name such a file", path.display())));
+    }
+    try_folder(path)
+}
+
 /// Refuses a name that frame numbers cannot be put into.
 pub fn check_name(path: &Path) -> Result<(), Fault> {
     match path.file_name() {
@@ -57,17 +62,7 @@ pub fn keep_inputs(
     main: &Path,
     outputs: impl IntoIterator<Item = PathBuf>,
 ) -> Result<(), Fault> {
-    let inputs: HashSet<PathBuf> = inputs.paths(main).filter_map(|path| path.canonicalize().ok()).collect();
-    // A file that does not exist yet replaces nothing.
-    let replaced =
-        outputs.into_iter().find(|path| path.canonicalize().is_ok_and(|path| inputs.contains(&path)));
-    match replaced {
-        Some(path) => Err(Fault::Usage(format!(
-            "{} is a file of the scene and would be replaced; choose another name for the output",
-            path.display()
-        ))),
-        None => Ok(()),
-    }
+    Inputs::keep(inputs.paths(main), outputs).map_err(Fault::Usage)
 }
 
 /// Writes a whole file: it is complete and on the disk before it appears under its name.

@@ -165,8 +165,7 @@ pub fn shoot(
     console: Console,
 ) -> Result<(Stage, Totals, Ending), Fault> {
     let mut stage = Stage::new(scene)?;
-    console.note_all(stage.thin_mesh());
-    console.note_all(stage.starts_inside());
+    console.note_all(stage.notes());
     let setup = Setup { turned: turn.is_some(), format: Sink::format(&sinks) };
     let mut studio = Studio::new(view, &mut stage, setup)?;
     if studio.lacks_alpha() {
@@ -183,7 +182,7 @@ pub fn shoot(
         console.note(format_args!("drawing on {card}"));
     }
     interrupt::finish_current("the current frame");
-    let mut film = Film::new(sinks);
+    let mut film = Film::new(sinks)?;
     let mut totals = Totals::new();
     let last = wanted.last().copied().unwrap_or(0);
     let mut progress = console.progress("simulating and drawing", last);
@@ -266,9 +265,8 @@ fn all_options(options: &Options, range: FrameRange) -> Vec<(&'static str, Optio
         ("shutter", shutter.map(|shutter| shutter.to_string())),
         ("hair-width", hair_width.map(|width| width.to_string())),
         ("gpu", set(*gpu)),
-        ("turntable", set(options.turntable)),
-        // The angle of a turntable depends on the range; other frames do not.
-        ("frames", options.turntable.then(|| format!("{}-{}", range.first, range.last))),
+        // The angle of a frame depends on the range of all.
+        ("turntable", options.turntable.then(|| format!("over frames {}-{}", range.first, range.last))),
     ]);
     all
 }

@@ -153,7 +153,7 @@ struct Job {
 /// Runs the command.
 pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if let Some(path) = &options.report {
-        output::try_folder(path)?;
+        output::check_report(path)?;
     }
     let jobs = jobs(options)?;
     if options.table {

@@ -20,7 +20,8 @@ HELP = """examples:
   hairspring wedge a.toml b.toml --clip walk.bvh run.bvh -o out/wedge --bake abc
   hairspring wedge shot.toml --set solver.substeps=2,4,8 -o out/wedge --ray auto
 
-Each variant is a folder with its scene, its log, the clip and the bake. `table.csv` and `sheet.png` show all of them.
+Each variant is a folder with its scene, its log, the clip, a picture of the clip's last frame and the bake. `table.csv` and
+`sheet.png` show all of them.
 The command can be interrupted and run again: variants that are complete are kept."""
 
 

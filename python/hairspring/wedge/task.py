@@ -8,6 +8,7 @@ import os
 import sys
 import time
 from pathlib import Path
+from typing import TextIO
 
 from .programs import CHILDREN
 
@@ -20,10 +21,31 @@ def key_of(task: dict, scene: Path) -> str:
     return hashlib.sha256(json.dumps([*parts, _native.scene_inputs(scene)]).encode()).hexdigest()
 
 
+class ProgramError(Exception):
+    """A program failed: one sentence, and its exit code."""
+
+    def __init__(self, sentence: str, code: int) -> None:
+        super().__init__(sentence)
+        self.code = code
+
+
+def run_program(arguments: list[str], log: TextIO) -> str:
+    """Runs the program, and logs what it prints. Returns its standard output."""
+    code, output, errors = CHILDREN.run([sys.executable, "-m", "hairspring", "--quiet", *arguments])
+    log.write(f"$ hairspring {' '.join(arguments)}\n{output}{errors}")
+    if code:
+        lines = errors.strip().splitlines() or [f"the program ended with code {code}"]
+        sentence = next((line.removeprefix("error: ") for line in lines if line.startswith("error: ")), lines[-1])
+        raise ProgramError(sentence, code)
+    return output
+
+
 def run_variant(task: dict) -> dict:
     """Simulates one variant in its folder. Runs here or on another machine, which has the same files."""
     try:
         return simulate_variant(task)
+    except ProgramError as error:
+        return {"error": str(error), "code": error.code}
     except OSError as error:
         return {"error": unwritable(error, task["folder"]), "code": 5}
 
@@ -34,7 +56,7 @@ def unwritable(error: OSError, path: Path | str) -> str:
 
 
 def simulate_variant(task: dict) -> dict:
-    """As `run_variant`, with an exception if a file cannot be written."""
+    """As `run_variant`, with an exception if a program fails or a file cannot be written."""
     from .. import HairspringError
 
     if CHILDREN.ended:
@@ -61,26 +83,17 @@ def simulate_variant(task: dict) -> dict:
     started.write_text(key)
     # The earlier results are replaced from here on.
     done.unlink(missing_ok=True)
-    program = [sys.executable, "-m", "hairspring", "--quiet"]
+    began, rate = time.time(), ["--fps", task["fps"]]
     frames = ["--frames", task["frames"]] if task["frames"] else []
-    commands = [
-        ["render", str(scene), "-o", str(folder / "clip.mp4"), "--fps", task["fps"], "--size", task["size"], *frames, "--json"],
-        ["render", str(scene), "-o", str(folder / "still.png"), "--size", task["size"], *task["still"]],
-    ]
-    if task["bake"]:
-        name = "hair.####.hair" if task["bake"] == "hair" else f"hair.{task['bake']}"
-        commands.append(["bake", str(scene), "-o", str(folder / name), "--fps", task["fps"], *frames, *resume])
-    began, result = time.time(), {}
+    render = ["render", str(scene), "--size", task["size"], *rate]
     with open(folder / "log.txt", "a") as log:
-        for command in commands:
-            code, output, errors = CHILDREN.run([*program, *command])
-            log.write(f"$ hairspring {' '.join(command)}\n{output}{errors}")
-            if code:
-                lines = errors.strip().splitlines() or [f"the program ended with code {code}"]
-                sentence = next((line.removeprefix("error: ") for line in lines if line.startswith("error: ")), lines[-1])
-                return {"error": sentence, "code": code}
-            if "--json" in command:
-                result = json.loads(output)
+        result = json.loads(run_program([*render, "-o", str(folder / "clip.mp4"), *frames, "--json"], log))
+        # A clip of the whole motion begins at frame 1.
+        last = task["frames"].split("-")[-1] if task["frames"] else str(result["frames"])
+        run_program([*render, "-o", str(folder / "still.png"), "--frames", last], log)
+        if task["bake"]:
+            name = "hair.####.hair" if task["bake"] == "hair" else f"hair.{task['bake']}"
+            run_program(["bake", str(scene), "-o", str(folder / name), *rate, *frames, *resume], log)
     files = sorted(f.name for f in folder.iterdir() if f.is_file() and not f.name.startswith(".") and f != done)
     result |= {"key": key, "files": files, "seconds": round(time.time() - began, 2)}
     pending = folder / ".done.json"

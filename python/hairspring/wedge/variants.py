@@ -71,13 +71,12 @@ def toml_value(text: str) -> str:
 
 def tasks(options: argparse.Namespace, found: list[Variant]) -> list[dict]:
     """What `run_variant` needs of each variant."""
-    still = ["--frames", options.frames.split("-")[-1] if options.frames else "60"]
     out = []
     for variant in found:
         folder = (options.output / variant.name).resolve()
         text = scene_text(variant, folder)
         out.append(
             {"name": variant.name, "folder": str(folder), "text": text, "frames": options.frames, "fps": options.fps}
-            | {"size": options.size, "bake": options.bake, "still": still}
+            | {"size": options.size, "bake": options.bake}
         )
     return out

@@ -4,7 +4,13 @@ use super::samples::Samples;
 use crate::{console::Console, fault::Fault, interrupt, output};
 use glam::Vec3;
 use hairspring_io::{CacheDescription, Format, usc, write_cache};
-use std::path::{Path, PathBuf};
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+/// Name of the folder of checkpoints among the samples.
+const CHECKPOINTS: &str = "sample.checkpoints";
 
 /// A file of moving strands.
 pub struct Cache {
@@ -43,14 +49,13 @@ impl Cache {
         })
     }
 
-    /// Writes the file from its samples. Velocities are central differences; at the ends, one-sided ones.
-    pub fn put_together(
+    /// Completes a description with the samples `numbers`, and checks that a file can be written from it: that a layer fits
+    /// the stage below it, for example. A long simulation is not lost to an error that is known before it.
+    pub fn checked(
         &self,
         (numbers, samples): (&[u32], &Samples),
-        pattern: &Path,
         description: CacheDescription,
-        console: Console,
-    ) -> Result<(), Fault> {
+    ) -> Result<CacheDescription, Fault> {
         let description = CacheDescription {
             fps: samples.fps(),
             first_frame: numbers.first().map_or(0.0, |n| samples.frame_of(*n)),
@@ -59,7 +64,20 @@ impl Cache {
             over: self.over.clone(),
             ..description
         };
-        let mut writer = write_cache(&self.path, &description).map_err(Fault::writing)?;
+        // A writer that is dropped leaves no file.
+        drop(write_cache(&self.path, &description).map_err(Fault::writing)?);
+        Ok(description)
+    }
+
+    /// Writes the file from its samples. Velocities are central differences; at the ends, one-sided ones.
+    pub fn put_together(
+        &self,
+        (numbers, samples): (&[u32], &Samples),
+        pattern: &Path,
+        description: &CacheDescription,
+        console: Console,
+    ) -> Result<(), Fault> {
+        let mut writer = write_cache(&self.path, description).map_err(Fault::writing)?;
         let failed =
             |why: String| Fault::Unwritable(format!("{} could not be written: {why}", self.path.display()));
         let read = |k: usize| numbers.get(k).map(|n| points_of(&output::frame_path(pattern, *n))).transpose();
@@ -84,13 +102,52 @@ impl Cache {
         writer.finish().map_err(failed)
     }
 
-    /// Removes the samples.
+    /// Removes what bakes wrote to the folder of the samples, and the folder if nothing else is in it.
     pub fn remove_samples(&self, console: Console) {
         let folder = self.folder();
-        if let Err(why) = std::fs::remove_dir_all(&folder) {
+        let removed = remove_own_files(&folder).and_then(|kept| match kept {
+            0 => std::fs::remove_dir(&folder),
+            _ => {
+                console.note(format_args!(
+                    "the folder {} is kept, because it holds files that no bake has written",
+                    folder.display()
+                ));
+                Ok(())
+            }
+        });
+        if let Err(why) = removed {
             console.note(format_args!("the folder {} could not be removed: {why}", folder.display()));
         }
     }
+}
+
+/// Removes samples, their manifest and their checkpoints from a folder. Returns the number of other entries.
+fn remove_own_files(folder: &Path) -> io::Result<usize> {
+    let mut others = 0;
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let number = |prefix: &str, end: &str| {
+            let digits = name.strip_prefix(prefix).and_then(|rest| rest.strip_suffix(end));
+            digits.is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()))
+        };
+        let (path, is_folder) = (entry.path(), entry.file_type()?.is_dir());
+        if is_folder && name == CHECKPOINTS {
+            let kept = remove_own_files(&path)?;
+            others += usize::from(kept > 0);
+            if kept == 0 {
+                std::fs::remove_dir(&path)?;
+            }
+        } else if !is_folder
+            && (number("sample.", ".data") || number("step.", "") || name == "sample.bake.data.json")
+        {
+            std::fs::remove_file(&path)?;
+        } else {
+            others += 1;
+        }
+    }
+    Ok(others)
 }
 
 /// Reads the points of a sample.

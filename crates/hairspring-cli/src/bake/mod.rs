@@ -12,7 +12,7 @@ use crate::{
     input::Input,
     interrupt, output,
     play::{Ending, play_from},
-    totals::{self, Totals},
+    totals::{self, Totals, grouped},
 };
 use cache::Cache;
 use checkpoints::Checkpoints;
@@ -35,8 +35,10 @@ use std::{path::PathBuf, time::Instant};
 /// other. Every frame has the same strands in the same order. A file appears only when it is complete. The
 /// result is bit-identical for any number of threads.
 ///
-/// One file of moving strands is put together at the end, from samples in the folder NAME.frames next to it. --resume
-/// continues with them.
+/// A .tfx file needs the same number of points in every strand.
+///
+/// One file of moving strands is put together at the end, from samples in a folder next to it, such as
+/// hair.usdc.frames for hair.usdc. --resume continues with them.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
@@ -71,8 +73,8 @@ pub struct Options {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=16))]
     samples: u32,
 
-    /// Seconds to simulate at the start before the first frame, while nothing moves [default: from the scene]
-    #[arg(long, value_name = "SECONDS", value_parser = frames::duration)]
+    /// Seconds to simulate at the start before the first frame, while nothing moves, 0 to 60 [default: from the scene]
+    #[arg(long, value_name = "SECONDS", value_parser = frames::preroll)]
     preroll: Option<f32>,
 
     /// Write only the simulated strands
@@ -83,7 +85,7 @@ pub struct Options {
     #[arg(long, value_name = "FILE.usd")]
     over: Option<PathBuf>,
 
-    /// Keep the folder NAME.frames of a file of moving strands
+    /// Keep the folder with the samples of a file of moving strands, such as hair.usdc.frames
     #[arg(long)]
     keep_frames: bool,
 
@@ -178,9 +180,6 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let mut wanted = all.clone();
     let outputs = wanted.iter().map(|sample| output::frame_path(&pattern, *sample));
     output::keep_inputs(&files, &options.input.path, outputs.chain([options.output.clone()]))?;
-    if let Some(cache) = &cache {
-        cache.create_folder()?;
-    }
     let mut manifest = None;
     if output::is_sequence(&pattern) {
         let origin = Origin::new("bake", &options.listed(), files);
@@ -194,6 +193,10 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         }
         manifest = Some(begun);
     }
+    if !options.only_guides {
+        // Before the scene is set up, which may take long.
+        FrameWriter::new(&pattern, scene.grooms.iter().map(|groom| (&groom.groom).into()))?;
+    }
     let names: Vec<String> = scene.grooms.iter().map(|groom| groom.name.clone()).collect();
     let materials = scene.grooms.iter().map(|groom| match &groom.materials[..] {
         [] => vec![Material::default()],
@@ -201,16 +204,23 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     });
     let materials: Vec<_> = materials.collect();
     let mut stage = Stage::new(scene)?;
-    console.note_all(stage.thin_mesh());
-    console.note_all(stage.starts_inside());
+    console.note_all(stage.notes());
     let selection = Selection::new(&stage, options.only_guides);
     let grooms = selection.grooms(&stage);
-    let (mut writer, left_out) = FrameWriter::new(grooms.iter().map(|groom| groom.into()));
+    let (mut writer, left_out) = FrameWriter::new(&pattern, grooms.iter().map(|groom| groom.into()))?;
     // A file of moving strands takes everything but the points from the grooms.
     if cache.is_none() {
         console.note_all(left_out);
     }
+    let described = cache.as_ref().map(|cache| {
+        let source = options.input.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        cache.checked((&all, &samples), selection.describe(&names, grooms, materials, source))
+    });
+    let described = described.transpose()?;
     interrupt::finish_current("the current frame");
+    if let Some(cache) = &cache {
+        cache.create_folder()?;
+    }
     if let Some(manifest) = &mut manifest {
         manifest.will_replace(wanted.iter().map(|sample| output::frame_path(&pattern, *sample)));
         manifest.write()?;
@@ -285,33 +295,33 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         );
         return Err(Fault::Interrupted(text));
     }
-    if let Some(cache) = &cache {
-        let source = options.input.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        cache.put_together(
-            (&all, &samples),
-            &pattern,
-            selection.describe(&names, grooms, materials, source),
-            console,
-        )?;
+    if let (Some(cache), Some(description)) = (&cache, &described) {
+        cache.put_together((&all, &samples), &pattern, description, console)?;
         if !options.keep_frames {
             cache.remove_samples(console);
         }
     }
-    let skipped = all.len() - wanted.len();
+    let frames = samples.frames_in(&wanted);
+    let skipped = samples.frames_in(&all) - frames;
     if options.json {
         let summary = json!({
             "output": options.output,
-            "frames": wanted.len(),
+            "frames": frames,
+            "samples": wanted.len(),
             "skipped": skipped,
             "fps": options.fps.hertz(),
         });
         print_line(totals.json(&stage, summary));
     } else {
         let skipped = if skipped > 0 { format!(", {skipped} existed already") } else { String::new() };
+        let taken = match options.samples {
+            1 => String::new(),
+            _ => format!("; {} samples", grouped(wanted.len())),
+        };
         print_line(format_args!(
-            "wrote    {} ({}{skipped})",
+            "wrote    {} ({}{skipped}{taken})",
             options.output.display(),
-            totals::frames(wanted.len())
+            totals::frames(frames)
         ));
         totals.print(&stage);
     }

@@ -56,6 +56,11 @@ impl Samples {
         number(range.first)..=number(range.last)
     }
 
+    /// How many of these samples are at the time of a frame.
+    pub fn frames_in(&self, samples: &[u32]) -> usize {
+        samples.iter().filter(|sample| self.step_of(**sample).is_multiple_of(self.per_frame)).count()
+    }
+
     /// The number of steps from time 0 to a sample.
     pub fn step_of(&self, sample: u32) -> u32 {
         sample - self.start
@@ -84,6 +89,7 @@ mod tests {
         let all: Vec<u32> = samples.of(FrameRange { first: 1002, last: 1003 }).collect();
         assert_eq!(all.iter().map(|s| samples.frame_of(*s)).collect::<Vec<_>>(), [1002.0, 1002.5, 1003.0]);
         assert_eq!(all.iter().map(|s| samples.step_of(*s)).collect::<Vec<_>>(), [2, 3, 4]);
+        assert_eq!((samples.frames_in(&all), samples.frames_in(&all[1..])), (2, 1));
         assert!(samples.check(FrameRange { first: 1000, last: 1003 }).is_err());
         assert_eq!(samples.whole(None), FrameRange { first: 1001, last: 1120 });
     }

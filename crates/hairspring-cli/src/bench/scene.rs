@@ -150,7 +150,7 @@ pub(super) fn run(
         "         {ns:.2} ns per point and substep, per core, for the solve alone (wall time x threads)"
     ));
     print_line(format_args!(
-        "met      {} points and {} segments pushed out by a collider at the end of the median frame",
+        "contact  {} points and {} segments pushed out by a collider at the end of the median frame",
         grouped(points),
         grouped(segments)
     ));

@@ -86,7 +86,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         return Err(Fault::Usage(format!("--seconds is at most {LONGEST}")));
     }
     if let Some(path) = &options.report {
-        output::try_folder(path)?;
+        output::check_report(path)?;
     }
     let scene = scene(options, console)?;
     let still =

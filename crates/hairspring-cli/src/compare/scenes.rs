@@ -109,8 +109,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     let paths = [a.path, b.path];
     let mut stages = [Stage::new(a.scene)?, Stage::new(b.scene)?];
-    stages.iter().for_each(|stage| console.note_all(stage.thin_mesh()));
-    stages.iter().for_each(|stage| console.note_all(stage.starts_inside()));
+    stages.iter().for_each(|stage| console.note_all(stage.notes()));
     if let Some(picture) = &mut picture {
         picture.begin(&mut stages, captions_of(&settings), &paths)?;
     }

@@ -3,7 +3,7 @@
 //! Scripts branch on the code, and people read the sentence, so it names the file and the problem. After
 //! each refusal the folder is unchanged: no output, no temporary file.
 
-use crate::common::{contents, groom, program, run, succeed, write_groom};
+use crate::common::{contents, fail, groom, program, run, succeed, write_groom};
 use glam::Vec3;
 use std::path::Path;
 
@@ -166,12 +166,34 @@ fn impossible_outputs() {
     refuse(f, &["render", "groom.hair", "-o", "no/x.png"], 5, &["no", "does not exist"]);
     refuse(f, &["bake", "groom.hair", "-o", "no/x.#.hair"], 5, &["no", "does not exist"]);
     refuse(f, &["convert", "groom.hair", "no/x.tfx"], 5, &["no", "does not exist"]);
-    // A .tfx file cannot hold strands of different point counts.
-    refuse(f, &["convert", "groom.hair", "x.tfx"], 5, &["x.tfx"]);
     refuse(f, &["bake", "groom.hair", "-o", "x.hair"], 2, &["x.hair", "#"]);
     refuse(f, &["render", "groom.hair", "-o", "x.png", "--frames", "1-5"], 2, &["x.png", "#"]);
     refuse(f, &["render", "groom.hair", "-o", "x.mp4", "--resume"], 2, &["--resume"]);
     refuse(f, &["render", "groom.hair", "-o", "x.mp4", "--size", "8x8"], 2, &["8×8"]);
+}
+
+/// A .tfx file cannot hold strands of different point counts. A bake says so before it simulates and writes.
+#[test]
+fn strands_that_the_format_cannot_hold() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    let words = ["tfx", "needs the same number of points in every strand"];
+    refuse(f, &["convert", "groom.hair", "x.tfx"], 4, &words);
+    let bake = ["bake", "groom.hair", "-o", "x.#.tfx"];
+    refuse(f, &bake, 4, &words);
+    refuse(f, &[&bake[..], &["--only-guides"]].concat(), 4, &words);
+}
+
+#[test]
+fn a_preroll_out_of_range_names_the_option() {
+    let folder = tempfile::tempdir().unwrap();
+    write_groom(folder.path(), 5);
+    for seconds in ["61", "-1", "long"] {
+        let preroll = format!("--preroll={seconds}");
+        let error = fail(folder.path(), &["bake", "groom.hair", "-o", "x.#.hair", &preroll], 2);
+        assert!(error.contains("--preroll") && error.contains("from 0 to 60"), "{error}");
+    }
 }
 
 #[cfg(unix)]

@@ -5,7 +5,7 @@
 //! bit from the next flickers. Every frame's file is compared byte for byte with that of an uninterrupted
 //! run.
 
-use crate::common::{contents, names, succeed, write_scene};
+use crate::common::{contents, json, names, succeed, write_scene};
 use std::path::Path;
 
 /// Bakes frames 1 to 12 into `folder`/`name`, with additional arguments.
@@ -59,6 +59,31 @@ fn part_of_a_range_equals_the_full_bake() {
     std::fs::create_dir(folder.path().join("part")).unwrap();
     succeed(folder.path(), &["bake", "scene.toml", "-o", "part/hair.###.hair", "--frames", "8-9"]);
     assert!(contents(&folder.path().join("part"))[..2] == whole[7..9]);
+}
+
+#[test]
+fn a_bake_with_samples_counts_frames_and_samples() {
+    let folder = tempfile::tempdir().unwrap();
+    write_scene(folder.path(), 50);
+    let bake = ["bake", "scene.toml", "-o", "hair.pc2", "--frames", "1-3", "--samples", "2"];
+    let report = json(&succeed(folder.path(), &[&bake[..], &["--json"]].concat()));
+    let counts = ["frames", "samples", "skipped"].map(|key| report[key].as_u64());
+    assert_eq!(counts, [Some(3), Some(5), Some(0)]);
+    let lines = succeed(folder.path(), &bake);
+    assert!(lines.contains("hair.pc2 (3 frames; 5 samples)"), "{lines}");
+}
+
+#[test]
+fn one_file_of_strands_leaves_files_of_the_user_in_its_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    write_scene(folder.path(), 50);
+    let bake = ["bake", "scene.toml", "-o", "hair.pc2", "--frames", "1-3", "--checkpoint", "1"];
+    succeed(folder.path(), &bake);
+    assert!(!folder.path().join("hair.pc2.frames").exists());
+    std::fs::create_dir(folder.path().join("hair.pc2.frames")).unwrap();
+    std::fs::write(folder.path().join("hair.pc2.frames/notes.txt"), "mine").unwrap();
+    succeed(folder.path(), &bake);
+    assert_eq!(names(&folder.path().join("hair.pc2.frames")), ["notes.txt"]);
 }
 
 #[cfg(unix)]

@@ -55,6 +55,8 @@ fn five_seconds_of_shaking() {
     assert!(number("max_depth_m_ever") < 1e-4, "{found}");
     assert_eq!((number("non_finite"), number("reset_strands")), (0.0, 0.0));
     assert!((1.0..120.0).contains(&number("bytes_per_point")), "{found}");
+    // The surface of a sphere is exact.
+    assert_eq!(number("surface_depth_m"), number("segment_depth_m"));
 
     let (median, p95) = (number("ms_per_frame_median"), number("ms_per_frame_p95"));
     let fastest = number("ms_per_frame_fastest");
@@ -184,6 +186,14 @@ fn a_table_refuses_a_chosen_model_or_instruction_set() {
 }
 
 #[test]
+fn a_scene_to_hold_is_needed_with_any_other_option() {
+    for more in [&[][..], &["--strands", "64"], &["--table"]] {
+        let stderr = fail(Path::new("."), &[&["bench", "--rest"], more].concat(), 2);
+        assert!(stderr.contains("--rest") && stderr.contains("--scene"), "{more:?}: {stderr}");
+    }
+}
+
+#[test]
 fn unknown_names_are_refused_with_the_known_ones() {
     for (flag, name, listed) in [
         ("--integrator", "leapfrog", "backward-euler"),
@@ -218,5 +228,5 @@ fn a_scene_reports_stage_times_and_contacts() {
     let still = json(&succeed(folder.path(), &still));
     assert!(still["speed_max_m_s"].as_f64().unwrap() < 1e-3, "hair at rest moves: {still}");
     let output = succeed(folder.path(), &arguments);
-    assert!(stages.iter().all(|name| output.contains(name)) && output.contains("pushed out"), "{output}");
+    assert!(stages.iter().all(|name| output.contains(name)) && output.contains("\ncontact  "), "{output}");
 }

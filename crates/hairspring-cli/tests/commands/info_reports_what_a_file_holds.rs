@@ -74,6 +74,39 @@ fn scenes_and_bodies() {
     assert_eq!((&body["vertices"], &body["triangles"]), (&3.into(), &1.into()));
 }
 
+/// Every group has a guide, also where the scene asks for fewer.
+#[test]
+fn the_number_of_simulated_strands_is_that_of_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let rows = (0..90).flat_map(|s| {
+        (0..4).map(move |i| format!("{s},{},{},0,{}\n", 0.001 * f64::from(s), 0.02 * f64::from(i), s.min(30)))
+    });
+    let table = format!("strand,x,y,z,group\n{}", rows.collect::<String>());
+    std::fs::write(folder.path().join("hair.csv"), table).unwrap();
+    for (guides, simulated, noted) in [
+        ("2", 31, true),
+        ("40", 57, true),
+        // A third of a guide more for each of 30 groups is rounding.
+        ("60", 70, false),
+        ("\"all\"", 90, false),
+        ("\"file\"", 90, false),
+    ] {
+        let scene = format!("[[groom]]\nfile = \"hair.csv\"\nscale = 1.0\nguides = {guides}\n");
+        std::fs::write(folder.path().join("scene.toml"), scene).unwrap();
+        let info = json(&succeed(folder.path(), &["info", "scene.toml", "--json"]));
+        let bake = ["bake", "scene.toml", "-o", "out.hair", "--frames", "1", "--json"];
+        let output = crate::common::run(folder.path(), &bake);
+        let run = json(&String::from_utf8(output.stdout).unwrap());
+        let counts = [&info["grooms"][0]["simulated"], &run["simulated_strands"]].map(|n| n.as_u64());
+        assert_eq!(counts, [Some(simulated); 2], "guides = {guides}");
+        let notes = String::from_utf8(output.stderr).unwrap();
+        let note = format!(
+            "{simulated} strands are simulated instead of {guides}, because each of the 31 groups has at least one"
+        );
+        assert_eq!(notes.contains(&note), noted, "{notes}");
+    }
+}
+
 #[test]
 fn curves_are_a_groom() {
     let folder = tempfile::tempdir().unwrap();

@@ -167,6 +167,10 @@ fn pictures_resume_by_the_same_rules() {
     assert!(contents(f) == whole);
     let other = [&render[..6], &["--size", "32x18", "--resume"]].concat();
     assert!(fail(f, &other, 2).contains("--size was 64x36 and is 32x18"));
+    // The range of a turntable is no option of its own.
+    let stderr = fail(f, &[&render[..], &["--turntable", "--resume"]].concat(), 2);
+    assert!(stderr.contains("--turntable was the default and is over frames 1-3"), "{stderr}");
+    assert!(!stderr.contains("--frames"), "{stderr}");
     assert!(contents(f) == whole);
     let stderr = fail(f, &["bake", "groom.hair", "-o", "x.hair", "--frames", "1", "--resume"], 2);
     assert!(stderr.contains("--resume needs numbered files"), "{stderr}");

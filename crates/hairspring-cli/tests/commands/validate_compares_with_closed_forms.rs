@@ -84,6 +84,7 @@ fn invalid_parameters_of_a_case_are_refused() {
         (&["validate", "incline", "--model", "clay"], 2, ["'clay'", "curvature"]),
         (&["validate", "incline", "--integrator", "magic"], 2, ["'magic'", "backward-euler"]),
         (&["validate", "incline", "--report", "no/where.html"], 5, ["no", "does not exist"]),
+        (&["validate", "incline", "--report", "shot.toml"], 2, ["shot.toml", ".html"]),
     ] {
         let stderr = fail(Path::new("."), arguments, code);
         assert_eq!(stderr.lines().count(), 1, "{arguments:?}: {stderr}");

@@ -14,7 +14,7 @@ use hairspring::material::Model;
 
 pub const CASE: Case = Case {
     name: "bend-twist",
-    about: "A naturally curved strand, clamped with its tangent down, leaves its plane below a weight Γ*.",
+    about: "A naturally curved strand, clamped with its tangent down, buckles out of its plane if its weight is below Γ*.",
     parameters: &[
         Parameter { symbol: &KAPPA_L, range: (5.0, 20.0) },
         Parameter { symbol: &GJ_OVER_EI, range: (0.3, 1.5) },

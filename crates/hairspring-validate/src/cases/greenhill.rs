@@ -12,7 +12,7 @@ use glam::DVec3;
 
 pub const CASE: Case = Case {
     name: "greenhill",
-    about: "A straight strand clamped upright gives way under its own weight at Γ = 7.8373.",
+    about: "A straight strand clamped upright buckles under its own weight at Γ = 7.8373.",
     parameters: &[],
     defaults: &[&[]],
     quantities: &[Quantity { name: "threshold Γ", tolerance: THRESHOLD }],

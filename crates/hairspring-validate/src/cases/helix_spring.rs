@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 pub const CASE: Case = Case {
     name: "helix-spring",
-    about: "A helix clamped at its root gives way to a small force at its tip as a coil spring does.",
+    about: "A helix clamped at its root deflects under a small tip force like a coil spring.",
     parameters: &[Parameter { symbol: &TURNS, range: (0.5, 6.0) }],
     // 8, 14 and 32 segments a turn at 32 points.
     defaults: &[&[31.0 / 8.0], &[31.0 / 14.0], &[31.0 / 32.0]],
