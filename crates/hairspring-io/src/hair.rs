@@ -41,29 +41,31 @@ struct Header {
 }
 
 impl Header {
-    /// Says what happens to the defaults of a file of another program. Those that are 0 are not set.
+    /// Says which defaults of a file of another program are not used. Those that are 0 are not set.
     fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
-        let mut note = |array: u32, name: &str, values: &[f32], use_of_it: &str| {
+        let mut note = |array: u32, name: &str, values: &[f32], why_not: Option<&str>| {
             if self.flags & array != 0 || values.iter().all(|x| *x == 0.0) {
                 return;
             }
             let listed: Vec<String> = values.iter().map(f32::to_string).collect();
-            let what_happens = if values.iter().all(|x| x.is_finite() && *x >= 0.0) {
-                use_of_it
+            let why_not = if values.iter().all(|x| x.is_finite() && *x >= 0.0) {
+                why_not
             } else {
-                "is not used, because it must be finite and not below 0"
+                Some("it must be finite and not below 0")
             };
-            notes.push(format!("the header's default {name} of {} {what_happens}", listed.join(", ")));
+            let not_used =
+                |why| format!("the header's default {name} of {} is not used; {why}", listed.join(", "));
+            notes.extend(why_not.map(not_used));
         };
-        note(HAS_THICKNESS, "thickness", &[self.thickness], "is that of all points, in the file's unit");
+        note(HAS_THICKNESS, "thickness", &[self.thickness], None);
         note(
             HAS_TRANSPARENCY,
             "transparency",
             &[self.transparency],
-            "is not used; it follows from the fiber's width",
+            Some("it follows from the fiber's width"),
         );
-        note(HAS_COLORS, "color", &self.color, "is not used; set the color in [groom.look]");
+        note(HAS_COLORS, "color", &self.color, Some("set the color in [groom.look]"));
         notes
     }
 }
@@ -235,15 +237,14 @@ mod tests {
         assert_eq!(
             notes,
             [
-                "the header's default thickness of 0.0001 is that of all points, in the file's unit",
                 "the header's default transparency of 0.25 is not used; it follows from the fiber's width",
                 "the header's default color of 1, 0.5, 0.25 is not used; set the color in [groom.look]",
             ]
         );
         // A line width for display, as most files have it.
         let (radii, notes) = finished(&file(0.1, 0.0, [0.0; 3]));
-        assert_eq!((radii, notes.len()), (vec![DEFAULT_RADIUS; 3], 2));
-        assert!(notes[1].contains("radius of 50.000 mm, which is taken for a display width"), "{notes:?}");
+        assert_eq!((radii, notes.len()), (vec![DEFAULT_RADIUS; 3], 1));
+        assert!(notes[0].contains("radius of 50.000 mm, which is taken for a display width"), "{notes:?}");
     }
 
     #[test]
@@ -252,7 +253,7 @@ mod tests {
         assert_eq!((radii, notes.len()), (vec![DEFAULT_RADIUS; 3], 3));
         for (note, name) in notes.iter().zip(["thickness of NaN", "transparency of -1", "color of inf, 0, 0"])
         {
-            assert!(note.contains(name) && note.contains("is not used, because it must be finite"), "{note}");
+            assert!(note.contains(name) && note.contains("is not used; it must be finite"), "{note}");
         }
     }
 }
