@@ -1,7 +1,7 @@
 //! Recovery after a crash: unsaved changes are kept in a file of the user, which the next start offers.
 //!
-//! Each window keeps a file for each open scene, and locks another beside it while it runs. A file without a locked
-//! neighbor was left by a window that ended without its user's decision.
+//! A window writes one file for each open scene. While it runs, it locks a second file in the same folder. A file whose
+//! lock is free was left by a window that ended before the user decided about the changes.
 
 use crate::{AppError, document::Document};
 use hairspring_io::atomically;

@@ -40,8 +40,9 @@ pub enum FrameError {
 }
 
 impl FrameWriter {
-    /// Collects what is the same in every frame of files such as `path`; the points of `grooms` are ignored. Returns
-    /// the writer, and what it leaves out although the format could hold it, one sentence each.
+    /// Creates a writer for frames in the format of `path`. It copies radii, colors and texture coordinates from `grooms`;
+    /// each frame supplies the points. Also returns one note for each of these attributes that the format supports and
+    /// the writer omits.
     ///
     /// # Errors
     /// Returns an error for an extension that is not that of a groom, or for strands that the format cannot hold.

@@ -164,7 +164,7 @@ impl App {
     }
 }
 
-/// Most steps that are requested from the simulation at once: those of a second.
+/// Maximum number of steps in one request to the simulation: one second.
 const STEPS: u64 = 60;
 
 /// Converts a screenshot of the window to a picture.

@@ -101,7 +101,8 @@ fn text_on_picture(
     behind
 }
 
-/// Draws the caption of one side of a comparison, within this side and beside the color legend. Returns its rectangle.
+/// Draws the caption of one scene of a comparison. It wraps at the edge of the scene and does not cover the color legend.
+/// Returns its rectangle.
 pub(super) fn caption(painter: &egui::Painter, side: egui::Rect, text: String, legend: bool) -> egui::Rect {
     let room = side.width() - 2.0 * CAPTION.x - if legend { LEGEND } else { 0.0 };
     text_on_picture(painter, side.min + CAPTION, egui::Align2::LEFT_TOP, text, (16.0, room.max(80.0)))

@@ -1,4 +1,4 @@
-//! What a text file has besides its text: a byte order mark, and the kind of its line ends.
+//! The byte order mark and the line endings of a text file.
 
 const MARK: char = '\u{feff}';
 
