@@ -73,17 +73,22 @@ def as_lengths_and_points(strands: list[np.ndarray]) -> tuple[np.ndarray, np.nda
     return np.ascontiguousarray(points, np.float32), offsets
 
 
-def guides_from_flags(flags: np.ndarray, roots: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """Guides and weights of strands, if only `flags` says which of them are guides: the nearest guide by its root."""
+def guides_from_flags(flags: np.ndarray, roots: np.ndarray, objects: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """Guides and weights of strands, if only `flags` says which of them are guides: the nearest guide by its root, among those
+    of the same object. `objects` numbers the object of each strand; those of an object without guides follow the others'."""
     guides = np.flatnonzero(flags)
     if len(guides) == 0 or len(guides) == len(flags):
         return None
     nearest = np.empty(len(flags), np.uint32)
-    # In blocks, so that memory stays bounded.
-    for first in range(0, len(flags), 4096):
-        block = roots[first : first + 4096]
-        distance = ((block[:, None, :] - roots[None, guides, :]) ** 2).sum(axis=2)
-        nearest[first : first + 4096] = guides[distance.argmin(axis=1)]
+    for label in np.unique(objects):
+        strands = np.flatnonzero(objects == label)
+        own = strands[flags[strands]]
+        own = own if len(own) else guides
+        # In blocks, so that memory stays bounded.
+        for first in range(0, len(strands), 4096):
+            block = strands[first : first + 4096]
+            distance = ((roots[block, None, :] - roots[None, own, :]) ** 2).sum(axis=2)
+            nearest[block] = own[distance.argmin(axis=1)]
     nearest[guides] = guides
     weights = np.zeros((len(flags), 3), np.float32)
     weights[:, 0] = 1.0

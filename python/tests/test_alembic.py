@@ -81,6 +81,55 @@ def test_every_attribute_survives_a_round_trip(tmp_path, suffix):
     assert (guides == groom.guides).all() and (weights == groom.guide_weights).all()
 
 
+@pytest.mark.parametrize("suffix", ["abc", "usdc"])
+def test_each_groom_keeps_its_own_guides(tmp_path, suffix):
+    if suffix != "abc":
+        pytest.importorskip("pxr")
+        from hairspring import usd as module
+    else:
+        module = alembic
+    # In the same place, so that the nearest guide may be that of another groom. The last is simulated entirely.
+    grooms = [random_groom(seed) for seed in (1, 2, 3)]
+    for k, groom in enumerate(grooms):
+        groom.name, groom.groups, groom.guides, groom.guide_weights = f"groom {k}", None, None, None
+        groom.guide = np.arange(50) % (k + 4) == 0 if k < 2 else np.ones(50, bool)
+    path = tmp_path / f"a.{suffix}"
+    writer = module.CurvesWriter(path, Description(24, 1, 1, grooms, "test"))
+    points = np.concatenate([groom.points for groom in grooms])
+    writer.frame(1, points, np.zeros_like(points))
+    writer.finish()
+    read = hs.Groom.read(path, scale=1.0)
+    assert len(read.offsets) == 151
+    guides, weights = read.guides
+    followed = guides[:, 0]
+    assert (weights[:, 0] == 1).all() and (np.arange(150) // 50 == followed // 50).all()
+    simulated = np.concatenate([groom.guide for groom in grooms])
+    np.testing.assert_array_equal(np.unique(followed), np.flatnonzero(simulated))
+    assert (followed[simulated] == np.flatnonzero(simulated)).all()
+
+
+def test_ids_are_unique_in_the_file_and_closest_guides_name_them(tmp_path):
+    grooms, path = [random_groom(1), random_groom(2)], tmp_path / "a.abc"
+    writer = alembic.CurvesWriter(path, Description(24, 1, 1, grooms, "test"))
+    points = np.concatenate([groom.points for groom in grooms])
+    writer.frame(1, points, np.zeros_like(points))
+    writer.finish()
+    top = Abc.IArchive(str(path)).getTop()
+
+    def values(name, kind, attribute):
+        parameters = AbcGeom.ICurves(top, name).getSchema().getArbGeomParams()
+        return np.asarray(kind(parameters, attribute).getExpandedValue().getVals())
+
+    for name, first in (("my_hair", 0), ("my_hair_2", 50)):
+        ids = values(name, AbcGeom.IInt32GeomParam, "groom_id")
+        np.testing.assert_array_equal(ids, first + np.arange(50))
+        guides = values(f"{name}_guides", AbcGeom.IInt32GeomParam, "groom_id")
+        np.testing.assert_array_equal(guides, first + np.arange(0, 50, 5))
+        assert set(values(name, AbcGeom.IV3iGeomParam, "groom_closest_guides").ravel()) == set(guides)
+    guides, _ = hs.Groom.read(path, scale=1.0).guides
+    np.testing.assert_array_equal(guides, np.concatenate([grooms[0].guides, 50 + grooms[1].guides]))
+
+
 def test_samples_between_frames_have_their_times(tmp_path, program):
     path = tmp_path / "hair.abc"
     options = ["--frames", "10-12", "--start", "10", "--samples", "2", "--fps", "24"]

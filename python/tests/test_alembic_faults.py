@@ -268,6 +268,28 @@ def test_guides_in_an_object_of_their_own_guide_the_others(tmp_path):
     assert (got.guides[own, 0] == own).all() and (got.guide_weights[own, 0] == 1).all()
 
 
+def test_guides_mark_strands_of_the_same_id_and_root(tmp_path):
+    """Ids that begin again in each object, as files of version 0.1.0 have them."""
+
+    def fill(made, top):
+        for name, height in (("low", 0.0), ("high", 1.0)):
+            for suffix, ids in (("", [0, 1, 2, 3, 4]), ("_guides", [1, 3])):
+                if name == "low" or not suffix:
+                    points = np.array([(0.01 * i, height + 0.01 * k, 0) for i in ids for k in range(4)])
+                    hair = AbcGeom.OCurves(top, name + suffix)
+                    linear, open_ends = AbcGeom.CurveType.kLinear, AbcGeom.CurvePeriodicity.kNonPeriodic
+                    sample = AbcGeom.OCurvesSchemaSample(vectors(points), integers([4] * len(ids)), linear, open_ends)
+                    hair.getSchema().set(sample)
+                    parameter(hair, "Int32", "groom_id", integers(ids))
+                    if suffix:
+                        constant = AbcGeom.GeometryScope.kConstantScope
+                        parameter(hair, "Int16", "groom_guide", filled(imath.ShortArray, [1]), constant)
+
+    got = alembic.read_curves(archive(tmp_path / "a.abc", fill), scale=1.0)
+    assert len(got.offsets) == 11
+    assert set(got.guides[:, 0]) == {1, 3}, "guides of `low` only"
+
+
 def test_guides_that_cannot_be_used_are_left_out_with_a_note(tmp_path):
     for name, ids, weights, words in (
         ("a", 99, (1, 0, 0), "strands that do not exist"),

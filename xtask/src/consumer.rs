@@ -30,19 +30,16 @@ fn main() {
         (0..16).map(move |i| root + Vec3::Y * (0.01 * i as f32)).collect::<Vec<_>>()
     };
     let groom = Groom::from_strands((0..100).map(strand), 40e-6);
-    let roots: Vec<_> = (0..100)
-        .map(|s| RigidTransform { translation: groom.strand(s)[0], rotation: Quat::IDENTITY })
-        .collect();
     for model in Model::ALL {
         let material = Material { model, ..Material::default() };
         let mut simulation = Simulation::builder(groom.clone()).materials(&[material]).build().unwrap();
         simulation.set_volume(&Volume { method: VolumeMethod::Incompressible, ..Volume::default() }).unwrap();
         let ball = ColliderShape::Sphere { center: Vec3::new(0.2, 0.05, 0.02), radius: 0.03 };
-        let colliders = [MovingCollider::at_rest(ball, RigidTransform::default())];
-        let anchor = RigidTransform::default();
+        let anchor = RigidTransform::IDENTITY;
+        let colliders = [MovingCollider::at_rest(ball, anchor)];
+        let roots = simulation.rigid_roots(anchor);
         for _ in 0..10 {
-            let air = Air::default();
-            simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &colliders, air });
+            simulation.step(&StepInput::new(1.0 / 60.0, anchor, &roots).with_colliders(&colliders));
         }
         let measure = simulation.measure(&colliders);
         assert_eq!((measure.non_finite, simulation.strand_count()), (0, 100));

@@ -34,23 +34,19 @@ fn named(table: &str, root: &Path) -> Result<BTreeSet<PathBuf>, String> {
     for row in table.lines().filter(|line| line.starts_with("| **")) {
         let (promise, holder) = row.trim_end_matches(" |").rsplit_once(" | ").ok_or("a row has one cell")?;
         let promise = promise.split("**").nth(1).unwrap_or_default();
-        let mut folder: Option<PathBuf> = None;
         let mut names = holder.split('`').skip(1).step_by(2).peekable();
-        if names.peek().is_none() && holder != "the same" {
+        if names.peek().is_none() {
             return Err(format!("'{promise}' names no test"));
         }
         for name in names.filter(|name| !name.starts_with("cargo xtask ")) {
-            // A name without a folder is in the folder of the file before it.
-            let path = match (name.contains('/'), &folder) {
-                (true, _) if root.join(name).exists() => PathBuf::from(name),
-                (true, _) => Path::new("crates").join(name),
-                (false, Some(folder)) => folder.join(name),
-                (false, None) => return Err(format!("'{promise}': {name} has no folder")),
-            };
+            if !name.contains('/') {
+                return Err(format!("'{promise}': {name} has no folder"));
+            }
+            let of_root = root.join(name).exists();
+            let path = if of_root { PathBuf::from(name) } else { Path::new("crates").join(name) };
             if !has_test(&root.join(&path)).map_err(|why| format!("'{promise}': {why}"))? {
                 return Err(format!("'{promise}': {} has no test", path.display()));
             }
-            folder = path.parent().map(Path::to_owned);
             named.insert(path);
         }
     }
@@ -97,10 +93,11 @@ mod tests {
 
     #[test]
     fn names_are_paths_of_tests() {
-        let row = "| **A promise**: it holds. | `hairspring/tests/api/examples_run.rs`, `snapshots_restore_exactly.rs` |";
+        let row =
+            "| **A promise**: it holds. | `hairspring/tests/api/examples_run.rs`, `fuzz/fuzz_targets` |";
         let found = named(row, Path::new(ROOT)).unwrap();
-        let expected = ["examples_run.rs", "snapshots_restore_exactly.rs"]
-            .map(|name| Path::new("crates/hairspring/tests/api").join(name));
+        let expected =
+            ["crates/hairspring/tests/api/examples_run.rs", "fuzz/fuzz_targets"].map(PathBuf::from);
         assert!(found.iter().eq(&expected), "{found:?}");
     }
 
@@ -109,7 +106,8 @@ mod tests {
         for (holder, part) in [
             ("`hairspring/tests/api/none.rs`", "none.rs"),
             ("`hairspring/src/lib.rs`", "has no test"),
-            ("`hairspring::tests`", "has no folder"),
+            ("`examples_run.rs`", "has no folder"),
+            ("the same", "names no test"),
             ("unit tests", "names no test"),
         ] {
             let error = named(&format!("| **A promise** | {holder} |"), Path::new(ROOT)).unwrap_err();

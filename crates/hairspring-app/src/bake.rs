@@ -18,7 +18,7 @@ use std::{
 /// A request for a bake.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BakeRequest {
-    /// Path of the files; `#` signs stand for the digits of the frame's number.
+    /// Path of the files; `#` signs represent the digits of the frame's number.
     pub path: PathBuf,
     /// First and last frame, from 1, which is at time 0.
     pub frames: [u32; 2],
@@ -183,7 +183,7 @@ fn groom_path(path: &Path) -> Result<PathBuf, AppError> {
     if !Format::of(path).is_some_and(|format| Format::GROOMS.contains(&format)) {
         let path = path.display();
         return Err(AppError::new(format!(
-            "{path}: hair is written as .hair, .tfx or .data; name such a file"
+            "{path}: hair is written as .hair, .tfx or .data; choose a name that ends so"
         )));
     }
     destination(path)

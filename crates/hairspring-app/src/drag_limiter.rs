@@ -187,7 +187,7 @@ fn lift(shapes: &[ColliderShape], place: RigidTransform, length: f32, body: Opti
         _ => Vec::new(),
     });
     let missing = joints.filter_map(|(joint, radius)| {
-        let p = place.point(joint);
+        let p = place.transform_point(joint);
         let away = |q: &Vec3| q.distance_squared(p);
         let (q, n) = skin.iter().min_by(|a, b| away(&a.0).total_cmp(&away(&b.0)))?;
         Some(radius + ROOM * length - (p - *q).dot(*n))

@@ -52,7 +52,7 @@ pub struct Handle {
 impl Handle {
     /// The action for dragging the handle to a position in world space.
     pub fn pulled(&self, to: Vec3) -> Action {
-        let own = |place: Vec3| list(self.pose.inverse_point(place), 1e4);
+        let own = |place: Vec3| list(self.pose.inverse_transform_point(place), 1e4);
         match &self.pull {
             Pull::Wind(from, longest) => {
                 let way = to - *from;
@@ -163,10 +163,10 @@ fn of_shape(
     };
     for (field, what) in [("center", "move"), ("a", "move an end"), ("b", "move an end"), ("point", "move")] {
         if let Some(place) = vector(table.get(field)) {
-            add(what, pose.point(place), Pull::Place(key.field(field)));
+            add(what, pose.transform_point(place), Pull::Place(key.field(field)));
         }
     }
-    let Some(middle) = vector(table.get("center")).map(|center| pose.point(center)) else { return };
+    let Some(middle) = vector(table.get("center")).map(|center| pose.transform_point(center)) else { return };
     if let Some(radius) = number("radius") {
         add("widen", middle + lens.right() * radius, Pull::Radius(key.field("radius"), middle));
     }

@@ -108,7 +108,7 @@ mod tests {
         ("wind.gust_rate", "[wind]\nvelocity = [0.0, 0.0, 2.0]\ngust = 0.5\n"),
         ("turbulence.size", "[turbulence]\nstrength = 1.0\n"),
         ("turbulence.octaves", "[turbulence]\nstrength = 1.0\n"),
-        ("wind_occlusion.body", "[turbulence]\nstrength = 1.0\n"),
+        ("wind_occlusion.body", "[wind]\nvelocity = [0.0, 0.0, 2.0]\n"),
         (
             "wind_occlusion.hair",
             "[[wind_source]]\nshape.point = { center = [0.2, 1.5, 0.0], radius = 0.05, speed = 2.0 }\n",

@@ -213,7 +213,7 @@ impl FromStr for Key {
                 let place =
                     inside.split_once(']').and_then(|(place, after)| Some((place.parse().ok()?, after)));
                 let (place, after) =
-                    place.ok_or_else(|| format!("'{rest}' is no entry of a list, such as [0]"))?;
+                    place.ok_or_else(|| format!("'{rest}' is not an entry of a list, such as [0]"))?;
                 steps.push(Step::Place(place));
                 rest = after;
             }

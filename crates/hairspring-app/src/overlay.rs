@@ -191,9 +191,9 @@ fn collider(
     let (m, _) = pose.matrix();
     let turned = |axes: Mat3| m * axes;
     match &collider.shape {
-        ColliderShape::Sphere { center, radius } => pen.ball(pose.point(*center), *radius, stroke),
+        ColliderShape::Sphere { center, radius } => pen.ball(pose.transform_point(*center), *radius, stroke),
         ColliderShape::Capsule { a, b, radius } => {
-            let (a, b) = (pose.point(*a), pose.point(*b));
+            let (a, b) = (pose.transform_point(*a), pose.transform_point(*b));
             let axis = (b - a).normalize_or(Vec3::Y);
             let x = axis.any_orthonormal_vector() * *radius;
             let y = axis.cross(x);
@@ -207,7 +207,7 @@ fn collider(
             let axes = turned(*axes);
             let corner = |k: usize| {
                 let sign = |bit: usize| if k & bit > 0 { 1.0 } else { -1.0 };
-                pose.point(*center) + axes * (*half * Vec3::new(sign(1), sign(2), sign(4)))
+                pose.transform_point(*center) + axes * (*half * Vec3::new(sign(1), sign(2), sign(4)))
             };
             for k in 0..8 {
                 for bit in [1, 2, 4] {
@@ -220,7 +220,7 @@ fn collider(
         ColliderShape::Plane { point, normal } => {
             let normal = m * *normal;
             let x = normal.any_orthonormal_vector();
-            let (at, y) = (pose.point(*point), normal.cross(x));
+            let (at, y) = (pose.transform_point(*point), normal.cross(x));
             for k in -5..=5 {
                 let step = k as f32 * 0.1;
                 pen.line(at + x * step - y * 0.5, at + x * step + y * 0.5, stroke);
@@ -228,16 +228,16 @@ fn collider(
             }
         }
         ColliderShape::Hull(hull) => {
-            hull.triangles().for_each(|t| triangle(pen, t.map(|p| pose.point(p)), stroke))
+            hull.triangles().for_each(|t| triangle(pen, t.map(|p| pose.transform_point(p)), stroke))
         }
         ColliderShape::Sheet(sheet) => {
             let all = sheet.triangles();
             let some = all.iter().step_by(1 + all.len() / TRIANGLES);
-            some.for_each(|t| triangle(pen, t.map(|p| pose.point(p)), stroke));
+            some.for_each(|t| triangle(pen, t.map(|p| pose.transform_point(p)), stroke));
         }
         ColliderShape::Custom(custom) => {
             let (center, radius) = custom.bounds();
-            pen.ball(pose.point(center), radius, stroke);
+            pen.ball(pose.transform_point(center), radius, stroke);
         }
         ColliderShape::Field(_) => skin(pen, stage, stroke.color),
         // A shape that a later version of the library adds.
@@ -308,7 +308,7 @@ fn volume(pen: &OverlayPainter, stage: &StageSnapshot) {
     let anchor = stage.anchor;
     let mut cells: HashMap<[i32; 3], u32> = HashMap::new();
     for p in stage.points().flatten().filter(|p| p.is_finite()) {
-        let own = (anchor.inverse_point(*p) / cell).floor();
+        let own = (anchor.inverse_transform_point(*p) / cell).floor();
         *cells.entry([own.x as i32, own.y as i32, own.z as i32]).or_default() += 1;
     }
     let most = cells.values().copied().max().unwrap_or(1) as f32;
@@ -316,7 +316,7 @@ fn volume(pen: &OverlayPainter, stage: &StageSnapshot) {
     places.sort_unstable();
     for (place, count) in places.iter().step_by(1 + places.len() / CELLS) {
         let middle = (Vec3::from(place.map(|c| c as f32)) + 0.5) * cell;
-        let Some((at, depth)) = pen.lens.project(anchor.point(middle)) else { continue };
+        let Some((at, depth)) = pen.lens.project(anchor.transform_point(middle)) else { continue };
         let side = (0.4 * cell * pen.lens.scale(depth, pen.rect.height())).max(1.0);
         let c = ramp::color((*count as f32 / most).sqrt(), [0.0, 1.0]);
         let byte = |x: f32| (x.powf(1.0 / 2.2) * 255.0) as u8;

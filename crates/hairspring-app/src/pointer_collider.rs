@@ -76,7 +76,7 @@ impl Pushed {
         let (mesh, scale) = self.made();
         Placed {
             mesh,
-            positions: mesh.positions.iter().map(|p| pose.point(*p * scale)).collect(),
+            positions: mesh.positions.iter().map(|p| pose.transform_point(*p * scale)).collect(),
             normals: mesh.normals.iter().map(|n| pose.rotation * *n).collect(),
         }
     }
@@ -127,7 +127,7 @@ mod tests {
             let (scale, shapes) = (pushed.made().1, pushed.shapes());
             let most = if let Pushed::Hand(_) = pushed { 4e-3 * scale } else { 1e-5 * scale };
             for p in &pushed.placed(pose).positions {
-                let p = pose.inverse_point(*p);
+                let p = pose.inverse_transform_point(*p);
                 let off = shapes.iter().map(|s| s.distance(p)).fold(f32::MAX, f32::min);
                 assert!(off.abs() < most, "{pushed:?}: {off} m");
             }

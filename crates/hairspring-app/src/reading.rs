@@ -74,7 +74,7 @@ impl Reading {
             Ok(outcome) => Some(outcome),
             Err(TryRecvError::Empty) => None,
             Err(TryRecvError::Disconnected) => Some(Err(AppError::new(
-                "the scene could not be read: its reader ended by an error of its own",
+                "the scene could not be read: the reader failed with an internal error",
             ))),
         }
     }

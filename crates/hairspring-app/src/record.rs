@@ -320,7 +320,7 @@ impl Sink {
         }
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         let wrong = |expected: &str| {
-            Err(AppError::new(format!("{}: {expected} was expected; name such a file", path.display())))
+            Err(AppError::new(format!("{}: {expected} was expected; choose another name", path.display())))
         };
         let clip = match (request.kind, extension.as_str()) {
             (Kind::Still, "png" | "jpg") => None,

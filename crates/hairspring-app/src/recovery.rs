@@ -47,7 +47,7 @@ pub struct FoundScene {
 impl FoundScene {
     /// Removes the file.
     pub fn discard(&self) {
-        // What cannot be removed is offered again.
+        // If a file cannot be removed, it is offered again at the next start.
         let _ = std::fs::remove_file(&self.file);
         let _ = std::fs::remove_file(self.file.with_extension("lock"));
     }
@@ -95,9 +95,7 @@ impl Recovery {
     pub fn new(folder: &Path) -> Result<Self, AppError> {
         Self::reserve(folder).map_err(|why| {
             let folder = folder.display();
-            AppError::new(format!(
-                "unsaved changes are not kept for a crash: {folder} cannot be written to: {why}"
-            ))
+            AppError::new(format!("crash recovery is off: cannot write to {folder}: {why}"))
         })
     }
 
@@ -120,8 +118,8 @@ impl Recovery {
         Err(io::ErrorKind::AlreadyExists.into())
     }
 
-    /// Keeps the document if it has new unsaved changes; `None`: the scene is closed. Returns the time until it must be
-    /// called again, if something is left to be written.
+    /// Writes the document if it has unsaved changes that are not on disk. Pass `None` when the scene is closed. Returns
+    /// the delay before the next call, if a write is pending.
     ///
     /// # Errors
     /// Returns an error if the last write failed.

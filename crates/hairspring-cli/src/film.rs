@@ -18,7 +18,7 @@ use std::{
 pub enum Sink {
     /// All frames in one clip.
     Clip(Box<ClipWriter>),
-    /// Each frame as a separate picture; `#` signs in the name stand for its number.
+    /// Each frame as a separate picture; `#` signs in the name represent its number.
     Pictures(PathBuf, Box<Manifest>),
     /// One frame as a picture.
     Still(PathBuf, u32),

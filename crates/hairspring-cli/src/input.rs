@@ -70,8 +70,8 @@ pub struct Input {
     #[command(flatten)]
     pub units: Units,
 
-    /// Strands to simulate in each groom, at least one for each group; the others follow. A number, `all`, or `file` for
-    /// the guides that the file names [default: from the scene, otherwise 2000]
+    /// Strands to simulate in each groom, and in the brows of the built-in head, at least one for each group; the others
+    /// follow. A number, `all`, or `file` for the guides that the file names [default: from the scene, otherwise 2000]
     #[arg(long, value_name = "N|all|file", value_parser = frames::guides)]
     pub guides: Option<Guides>,
 

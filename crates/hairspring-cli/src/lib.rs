@@ -25,10 +25,17 @@ mod totals;
 mod validate;
 
 use args::{Cli, Command};
-use clap::Parser;
+use clap::{
+    Parser,
+    error::{ContextKind, ContextValue},
+};
 use console::Console;
 use fault::Fault;
 use std::{ffi::OsString, io::Write, path::Path};
+
+/// What the program says about the command `wedge`, which the Python package adds.
+const WEDGE: &str = "`hairspring wedge` comes with the Python package: run `pip install '.[wedge]'` in a clone of the \
+    repository, and write `wedge` as the first argument";
 
 /// Runs the program with its arguments, of which the first is its name. Returns the exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
@@ -55,6 +62,10 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 
 /// Prints the help, the version, or what is wrong with the command line.
 fn explain(refused: &clap::Error) -> Result<u8, Fault> {
+    let named = refused.get(ContextKind::InvalidSubcommand);
+    if named.is_some_and(|value| matches!(value, ContextValue::String(name) if name == "wedge")) {
+        return Err(Fault::Usage(WEDGE.into()));
+    }
     let printed = refused.print().and_then(|()| std::io::stdout().flush());
     if refused.use_stderr() {
         return Ok(Fault::Usage(String::new()).code());

@@ -5,13 +5,12 @@ use hairspring_io::Inputs;
 use hairspring_view::sequence_path;
 use std::path::{Path, PathBuf};
 
-/// The path of frame `number`: `#` signs are replaced by the number. A name without them is returned as it
-/// is.
+/// Returns the path of frame `number`. Replaces `#` signs by the number; a name without them is unchanged.
 pub fn frame_path(pattern: &Path, number: u32) -> PathBuf {
     sequence_path(pattern, number).unwrap_or_else(|| pattern.to_owned())
 }
 
-/// Whether a name stands for numbered files.
+/// Whether a name has `#` signs, which represent the number of a frame.
 pub fn is_sequence(path: &Path) -> bool {
     sequence_path(path, 1).is_some()
 }
@@ -41,7 +40,10 @@ pub fn try_folder(path: &Path) -> Result<(), Fault> {
 /// Checks the name and the folder of a report. A name of another kind is likely to be that of a scene.
 pub fn check_report(path: &Path) -> Result<(), Fault> {
     if !matches!(extension(path).as_str(), "html" | "htm") {
-        return Err(Fault::Usage(format!("{}: a report is a .html file; name such a file", path.display())));
+        return Err(Fault::Usage(format!(
+            "{}: a report is a page; choose a name that ends in .html",
+            path.display()
+        )));
     }
     try_folder(path)
 }

@@ -179,7 +179,7 @@ impl Totals {
         }
         if self.reset_strands > 0 {
             print_line(format_args!(
-                "reset    {} strands became non-finite and were reset",
+                "reset    {} resets of strands that became non-finite",
                 self.reset_strands
             ));
         }

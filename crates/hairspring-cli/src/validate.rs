@@ -327,12 +327,9 @@ fn print_table(outcomes: &[Outcome]) {
     }
     let passed = outcomes.iter().filter(|o| o.pass()).count();
     print_line(format_args!("{passed} of {} pass", outcomes.len()));
-    // Reasons, printed once per case.
-    let mut reasons: Vec<(&str, &str)> =
-        outcomes.iter().filter_map(|o| Some((o.case, o.reason()?))).collect();
-    reasons.dedup();
-    for (case, reason) in reasons {
-        print_line(format_args!("{case}: {reason}"));
+    let reasons = outcomes.iter().filter_map(|o| Some(format!("{}: {}", o.case, o.reason()?)));
+    for reason in distinct(reasons.collect()) {
+        print_line(reason);
     }
 }
 

@@ -5,12 +5,13 @@
 use crate::{
     Axis, Motion, Place, Problem, ReadOptions,
     motion::check_samples,
-    text::{Words, as_text, shortened},
+    text::{Words, as_text, lines, shortened},
     units::{apply_to_motion, turn_of},
 };
 use glam::{Quat, Vec3};
 use hairspring::body::{Body, Clip, Joint, Trs};
 use hairspring_scene::stage::FrameRate;
+use std::{borrow::Cow, str::FromStr};
 
 /// One number in a frame's line.
 #[derive(Clone, Copy)]
@@ -54,16 +55,14 @@ pub fn parse(data: &[u8]) -> Result<Motion, Problem> {
 
 /// Reads a file. `rate` replaces its frame rate [Hz].
 fn read(data: &[u8], rate: Option<f64>) -> Result<Read, Problem> {
-    let text = as_text(data);
+    let text = without_comments(as_text(data));
     let mut words = Words::new(&text);
     let Hierarchy { joints, ends, channels } = hierarchy(&mut words)?;
     let mut notes = Vec::new();
-    words.expect("Frames:")?;
-    let named: usize = words.number("the number of frames")?;
+    let named: usize = labeled(&mut words, "Frames", "the number of frames")?;
     let line = words.line();
     words.expect("Frame")?;
-    words.expect("Time:")?;
-    let frame_time: f64 = words.number("the time of a frame")?;
+    let frame_time: f64 = labeled(&mut words, "Time", "the time of a frame")?;
     if rate.is_none() && !FRAME_TIMES.contains(&frame_time) {
         return Err(Problem::line(
             words.line(),
@@ -117,6 +116,35 @@ fn read(data: &[u8], rate: Option<f64>) -> Result<Read, Problem> {
     Ok(Read { motion: Motion { joints, clip }, ends, notes })
 }
 
+/// Returns a text with its lines of comments (`#`) empty.
+fn without_comments(text: Cow<'_, str>) -> Cow<'_, str> {
+    let is_comment = |line: &str| line.trim_start().starts_with('#');
+    if !lines(&text).any(is_comment) {
+        return text;
+    }
+    let kept = lines(&text).map(|line| if is_comment(line) { "" } else { line });
+    Cow::Owned(kept.flat_map(|line| [line, "\n"]).collect())
+}
+
+/// Reads a label, a colon and a number, with or without spaces between them.
+fn labeled<T: FromStr>(words: &mut Words<'_>, label: &str, what: &str) -> Result<T, Problem> {
+    let word = words.word();
+    let missing = |words: &Words<'_>, found| Err(words.missing(&format!("`{label}:`"), found));
+    let head = word.and_then(|word| word.get(..label.len()));
+    let (Some(word), true) = (word, head.is_some_and(|head| head.eq_ignore_ascii_case(label))) else {
+        return missing(&*words, word);
+    };
+    let mut rest = &word[label.len()..];
+    if rest.is_empty() {
+        rest = words.word().unwrap_or("");
+    }
+    let Some(number) = rest.strip_prefix(':') else { return missing(&*words, Some(word)) };
+    if number.is_empty() {
+        return words.number(what);
+    }
+    number.parse().map_err(|_| words.missing(what, Some(number)))
+}
+
 /// Returns the rate that an unusual frame time probably stands for [Hz]: it may be the rate itself, or in
 /// milliseconds.
 fn likely_rate(frame_time: f64) -> f64 {
@@ -125,13 +153,14 @@ fn likely_rate(frame_time: f64) -> f64 {
     near(frame_time).or_else(|| near(1000.0 / frame_time)).unwrap_or(30.0)
 }
 
-/// Units that captures use [m]: meters, centimeters, CMU's (1/0.45 inch), inches, decimeters.
-const UNITS: [(f32, &str); 5] = [
+/// Units that captures use [m]: meters, centimeters, CMU's (1/0.45 inch), inches, decimeters, millimeters.
+const UNITS: [(f32, &str); 6] = [
     (1.0, "meters"),
     (0.01, "centimeters"),
     (0.0254 / 0.45, "CMU units of 1/0.45 inch"),
     (0.0254, "inches"),
     (0.1, "decimeters"),
+    (0.001, "millimeters"),
 ];
 
 /// Height of a person's skeleton [m]. It ends about 10 cm below the crown, and at the ankle or the toe.

@@ -68,14 +68,18 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let columns = columns(&cells(&first.map_err(|error| Problem::whole(error.to_string()))?), &mut notes)?;
     let mut groom = Groom { offsets: vec![0], ..Groom::default() };
     let (mut radii, mut last, mut attributes) = (Vec::new(), None, StrandAttributes::default());
-    let mut begun = HashSet::new();
+    let (mut begun, mut open_rows) = (HashSet::new(), 0usize);
     for row in rows {
         let row = row.map_err(|error| Problem::whole(error.to_string()))?;
         let number = row.position().map_or(0, |place| place.line() as usize);
         let wrong = |text: String| Problem::new(Place::Line(number), text);
-        let cells = cells(&row);
+        let mut cells = cells(&row);
         if cells == [""] {
             continue;
+        }
+        if cells.len() == columns.count + 1 && cells.last() == Some(&"") {
+            open_rows += 1;
+            cells.pop();
         }
         if cells.len() != columns.count {
             let hint = if cells.len() > columns.count { "; write numbers with decimal points" } else { "" };
@@ -136,6 +140,12 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     if last.is_some() {
         groom.offsets.push(groom.points.len() as u32);
     }
+    if open_rows > 0 {
+        notes.push(format!(
+            "{open_rows} lines end in `{}`, which makes an empty column that is ignored",
+            char::from(separator).escape_default()
+        ));
+    }
     let radii = columns.radius.map(|_| radii);
     let mut read = Read { groom, radii, true_radii: false, units: FileUnits::default(), notes };
     attributes.apply(&mut read)?;
@@ -182,7 +192,8 @@ fn columns(header: &[&str], notes: &mut Vec<String>) -> Result<Columns, Problem>
             || columns.numbers.iter().any(|(_, column)| *column == k)
             || columns.group == Some(k)
     };
-    let ignored: Vec<&str> = (0..names.len()).filter(|k| !used(*k)).map(|k| names[k].as_str()).collect();
+    let ignored: Vec<&str> =
+        (0..names.len()).filter(|k| !used(*k) && !names[*k].is_empty()).map(|k| names[k].as_str()).collect();
     if !ignored.is_empty() {
         notes.push(format!("ignored columns: {}", ignored.join(", ")));
     }
@@ -265,6 +276,15 @@ mod tests {
             let groom = parse(table.as_bytes()).unwrap();
             assert!(groom.guides.iter().all(|g| (g.weights.iter().sum::<f32>() - 1.0).abs() < 1e-6), "{x}");
         }
+    }
+
+    #[test]
+    fn a_separator_at_the_end_of_lines_makes_no_column() {
+        let read = super::read(b"strand,x,y,z\n0,1,2,3,\n0,4,5,6,\n").unwrap();
+        assert_eq!(read.groom.points, [Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 5.0, 6.0)]);
+        assert_eq!(read.notes, ["2 lines end in `,`, which makes an empty column that is ignored"]);
+        let read = super::read(b"strand,x,y,z,\n0,1,2,3,\n").unwrap();
+        assert_eq!((read.groom.points.len(), read.notes.len()), (1, 0));
     }
 
     #[test]

@@ -8,22 +8,26 @@
 
 mod bytes;
 mod chains;
+mod clip_choice;
 mod color;
 mod error;
 mod external;
 mod frame_writer;
 mod inputs;
+mod left_out;
 mod load;
 mod manifest;
 mod motion;
 mod observe;
 mod polygon;
 mod polylines;
+mod repair_notes;
 mod save;
 mod skin;
 mod skin_distance;
 mod strand_attributes;
 mod strands;
+mod strays;
 mod text;
 mod tfx_text;
 mod units;

@@ -3,12 +3,15 @@
 use crate::{
     Character, Error, Motion, Problem, ReadOptions, Result, bvh,
     bytes::read_regular,
+    clip_choice::{first_note, pick_clip},
     csv, external, gltf, hair, obj, ply,
+    repair_notes::repair_notes,
     strands::Read,
     text, tfx, tfxbone, tfxmesh,
-    units::{FileUnits, FitUnit, apply_to_body, extent, settle},
+    units::{FileUnits, FitUnit, WholeBody, apply_to_body, settle},
     usc,
 };
+use glam::Affine3A;
 use hairspring::{
     body::Body,
     groom::{Groom, Repairs, first_imprecise, sanitize},
@@ -179,37 +182,8 @@ pub(crate) fn read_groom_on(
     };
     check_groom(path, &groom)?;
     let repairs = sanitize(&mut groom);
-    let notes = notes.into_iter().chain(repair_notes(&repairs)).collect();
+    let notes = notes.into_iter().chain(repair_notes(&groom, &repairs)).collect();
     Ok(Loaded { value: groom, format, scale, repairs, notes: plain(notes) })
-}
-
-/// Describes what was repaired, and what was found and kept.
-fn repair_notes(repairs: &Repairs) -> Vec<String> {
-    let parts = [
-        (repairs.non_finite_points, "points that were not finite"),
-        (repairs.zero_segments, "segments of zero length"),
-        (repairs.short_strands, "strands of fewer than 3 points"),
-        (repairs.bad_radii, "radii that were not above 0"),
-    ];
-    let words: Vec<String> =
-        parts.iter().filter(|(n, _)| *n > 0).map(|(n, what)| format!("{n} {what}")).collect();
-    let mut notes = Vec::new();
-    if !words.is_empty() {
-        notes.push(format!("repaired {}", words.join(", ")));
-    }
-    if repairs.empty_strands > 0 {
-        notes.push(format!(
-            "{} strands have no finite point; each is now a stub of a millimeter at the root of another strand; remove them",
-            repairs.empty_strands
-        ));
-    }
-    if repairs.folds > 0 {
-        notes.push(format!(
-            "{} joints bend by more than 150°, so that strands are folded there; they are kept as they are",
-            repairs.folds
-        ));
-    }
-    notes
 }
 
 /// Checks that a groom has strands, near enough to the origin.
@@ -229,7 +203,17 @@ fn check_groom(path: &Path, groom: &Groom) -> Result<()> {
 /// Returns an error if the file is missing, unreadable, of another kind or malformed, or if its mesh has no
 /// triangles.
 pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
-    let loaded = read_character(path, options)?;
+    read_mesh(path, options, None)
+}
+
+/// Like [`read_body`]. If the file has no unit, that of the body `whole` which the mesh belongs to is used, if it fits
+/// where the mesh is placed.
+pub(crate) fn read_mesh(
+    path: &Path,
+    options: &ReadOptions,
+    whole: Option<(WholeBody, Affine3A)>,
+) -> Result<Loaded<Character>> {
+    let loaded = read_character(path, options, whole)?;
     if loaded.value.body.mesh.triangles.is_empty() {
         let text = match holds_only_curves(path) {
             // Lines that are wrong are so for a groom, too.
@@ -240,19 +224,26 @@ pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>
             }
             false => "the file has no triangles, so it is no body; export a mesh with faces",
         };
-        return Err(Problem::whole(text).in_file(path));
+        // What a glTF file hides or leaves out is the cause.
+        let notes = loaded.notes.iter().filter(|_| loaded.format == Format::Gltf);
+        let noted: String = notes.map(|note| format!(" ({note})")).collect();
+        return Err(Problem::whole(format!("{text}{noted}")).in_file(path));
     }
     Ok(loaded)
 }
 
 /// Reads a body, which may have joints and motions but no mesh.
-fn read_character(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
+fn read_character(
+    path: &Path,
+    options: &ReadOptions,
+    whole: Option<(WholeBody, Affine3A)>,
+) -> Result<Loaded<Character>> {
     let known = [&[Format::Gltf, Format::Obj, Format::TfxMesh], &Format::EXTERNAL[..]].concat();
     let format = format_of(path, &known, "a body")?;
     check_scale(path, options)?;
     if Format::EXTERNAL.contains(&format) {
         let (character, units, notes) = external::read_body(path, options)?;
-        return Ok(in_meters(character, format, &ReadOptions::default(), units, notes));
+        return Ok(in_meters(character, format, &ReadOptions::default(), units, whole, notes));
     }
     let data = bytes_of(path)?;
     let mut units = FileUnits::default();
@@ -266,7 +257,7 @@ fn read_character(path: &Path, options: &ReadOptions) -> Result<Loaded<Character
         _ => tfxmesh::parse(&data).map(|body| (still(body), Vec::new())),
     }
     .map_err(|p| p.in_file(path))?;
-    Ok(in_meters(character, format, options, units, notes))
+    Ok(in_meters(character, format, options, units, whole, notes))
 }
 
 /// Converts a body to meters and Y up.
@@ -275,10 +266,10 @@ fn in_meters(
     format: Format,
     options: &ReadOptions,
     units: FileUnits,
+    whole: Option<(WholeBody, Affine3A)>,
     mut notes: Vec<String>,
 ) -> Loaded<Character> {
-    let extent = extent(character.body.mesh.positions.iter().copied());
-    let (scale, turn) = settle(options, units, extent, &mut notes);
+    let (scale, turn) = settle(options, units, &character.body.mesh.positions, whole, &mut notes);
     apply_to_body(&mut character.body, &mut character.clips, scale, turn);
     character.morphs.convert(scale, turn);
     if let Some(cache) = &mut character.vertex_cache {
@@ -317,8 +308,9 @@ pub(crate) fn read_motion_at(
         make_printable(motion.joints.iter_mut().map(|joint| &mut joint.name).chain([&mut motion.clip.name]));
         return Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes: plain(notes) });
     }
-    let Loaded { value: mut character, scale, mut notes, .. } = read_character(path, options)?;
+    let Loaded { value: mut character, scale, mut notes, .. } = read_character(path, options, None)?;
     let clip = pick_clip(&character.clips, name).map_err(|text| Problem::whole(text).in_file(path))?;
+    notes.extend(first_note(&character.clips, name).map(|note| text::name(&note)));
     if character.morphs.moves(clip) {
         notes.push(
             "its animated morph targets are left out, because they move only the body of their own file; name the file as the body, too"
@@ -338,25 +330,6 @@ pub fn read_bones(path: &Path) -> Result<tfxbone::RootBones> {
     let mut bones = tfxbone::parse(&bytes_of(path)?).map_err(|p| p.in_file(path))?;
     make_printable(bones.names.iter_mut());
     Ok(bones)
-}
-
-/// Returns the index of the clip called `name`, ignoring case, or of the first if `name` is `None`. The error lists
-/// the available names.
-pub(crate) fn pick_clip(
-    clips: &[hairspring::body::Clip],
-    name: Option<&str>,
-) -> std::result::Result<usize, String> {
-    let found = match name {
-        Some(name) => clips.iter().position(|c| c.name.eq_ignore_ascii_case(name)),
-        None => (!clips.is_empty()).then_some(0),
-    };
-    found.ok_or_else(|| {
-        let known: Vec<&str> = clips.iter().map(|c| c.name.as_str()).collect();
-        match name {
-            Some(name) => format!("there is no motion called {name:?}; available: {}", list(&known)),
-            None => "the file holds no motion".into(),
-        }
-    })
 }
 
 /// Joins names for a sentence.

@@ -7,6 +7,7 @@
 
 use crate::{
     Place, Problem, color,
+    left_out::{LeftOut, UNMAPPED},
     polygon::triangulate,
     polylines::Polylines,
     strands::Read,
@@ -51,6 +52,7 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
             Some("v") => {
                 mesh.positions.push(vertex(&mut words, line_number)?);
                 if let Some(color) = color(words) {
+                    left_out.uncolored += mesh.positions.len() - 1 - mesh.colors.len();
                     mesh.colors.resize(mesh.positions.len() - 1, Vec3::ZERO);
                     mesh.colors.push(color);
                 }
@@ -60,7 +62,8 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
                 face.clear();
                 vertex_uv.resize(mesh.positions.len(), u32::MAX);
                 for corner in words {
-                    let (v, uv) = corner_of(corner, mesh.positions.len(), uvs.len(), line_number)?;
+                    let counts = [mesh.positions.len(), uvs.len()];
+                    let (v, uv) = corner_of(corner, counts, line_number, &mut left_out.unmapped)?;
                     if let Some(uv) = uv {
                         let slot = &mut vertex_uv[v as usize];
                         *slot = if *slot == u32::MAX { uv } else { *slot };
@@ -94,6 +97,9 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
     if vertex_uv.iter().any(|uv| *uv != u32::MAX) {
         vertex_uv.resize(mesh.positions.len(), u32::MAX);
         mesh.uvs = vertex_uv.iter().map(|uv| uvs.get(*uv as usize).copied().unwrap_or_default()).collect();
+    }
+    if !mesh.colors.is_empty() {
+        left_out.uncolored += mesh.positions.len() - mesh.colors.len();
     }
     let mut notes = left_out.notes();
     if !mesh.colors.is_empty() {
@@ -129,7 +135,7 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     let text = as_text(data);
     let (mut vertices, mut uvs): (Vec<Vec3>, Vec<Vec2>) = (Vec::new(), Vec::new());
     let mut lines = Polylines::default();
-    let (mut faces, mut points, mut colored) = (0usize, 0usize, 0usize);
+    let (mut faces, mut points, mut colored, mut undefined) = (0usize, 0usize, 0usize, 0usize);
     for (line_number, line) in statements(&text) {
         let mut words = line.split_whitespace();
         match words.next() {
@@ -140,7 +146,8 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
             Some("vt") => uvs.push(texture_coordinate(&mut words, line_number)?),
             Some("f") => faces += 1,
             Some("l") => {
-                let mut rest = words.map(|word| corner_of(word, vertices.len(), uvs.len(), line_number));
+                let counts = [vertices.len(), uvs.len()];
+                let mut rest = words.map(|word| corner_of(word, counts, line_number, &mut undefined));
                 let Some(root) = rest.next().transpose()? else { continue };
                 let Some(first) = rest.next() else {
                     points += 1;
@@ -193,6 +200,7 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
         (faces, "faces are left out, because a groom is read from polylines"),
         (points, "polylines of one point are left out"),
         (closed, "closed polylines are opened at their first point, which is the root"),
+        (undefined, UNMAPPED),
         (unmapped, "strands have no texture coordinates and get 0, 0; give each root one"),
         (colored, "vertices have a color, which is not used; write a .ply to keep it"),
     ] {
@@ -201,45 +209,6 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
         }
     }
     Ok(Read { groom, radii: None, true_radii: false, units: FileUnits::default(), notes })
-}
-
-/// What a mesh of the file lacks.
-#[derive(Default)]
-struct LeftOut {
-    /// Faces of fewer than three corners.
-    faces: usize,
-    /// Large polygons that are not convex.
-    concave: usize,
-    lines: usize,
-    /// Free-form curves and surfaces.
-    surfaces: usize,
-}
-
-impl LeftOut {
-    /// The sentence for a file without triangles.
-    fn instead_of_faces(&self) -> &'static str {
-        if self.surfaces > 0 {
-            "the file has free-form surfaces but no faces, so it is no mesh; export it as polygons"
-        } else if self.lines > 0 {
-            "the file has polylines but no faces, so it is no mesh; name it as a groom, or export faces"
-        } else {
-            "the file has no faces, so it is no mesh; export it as .obj with faces"
-        }
-    }
-
-    fn notes(&self) -> Vec<String> {
-        let counts = [
-            (self.faces, "faces have fewer than three corners and are left out; clean up the mesh"),
-            (
-                self.concave,
-                "polygons of many corners are not convex, and may overlap; triangulate them before the export",
-            ),
-            (self.lines, "polylines are no surface and are left out; name the file as a groom to read them"),
-            (self.surfaces, "free-form curves and surfaces are left out; export them as polygons"),
-        ];
-        let some = counts.into_iter().filter(|(count, _)| *count > 0);
-        some.map(|(count, text)| format!("{count} {text}")).collect()
-    }
 }
 
 /// The statements of a file, with the number of their first line, counted from 1. A line that ends in a backslash
@@ -305,11 +274,22 @@ fn texture_coordinate<'a>(words: &mut impl Iterator<Item = &'a str>, line: usize
 }
 
 /// Reads a corner of a face or a point of a line: the vertex and, if it has one, the texture coordinate.
-fn corner_of(word: &str, vertices: usize, uvs: usize, line: usize) -> Result<(u32, Option<u32>), Problem> {
+/// `counts` are those of the vertices and texture coordinates so far. A number of a texture coordinate before any is
+/// defined is counted in `undefined`.
+fn corner_of(
+    word: &str,
+    counts: [usize; 2],
+    line: usize,
+    undefined: &mut usize,
+) -> Result<(u32, Option<u32>), Problem> {
     let mut fields = word.split('/');
-    let v = index(fields.next().unwrap_or(""), vertices, line, "vertex")?;
+    let v = index(fields.next().unwrap_or(""), counts[0], line, "vertex")?;
     let uv = fields.next().filter(|f| !f.is_empty());
-    let uv = uv.map(|uv| index(uv, uvs, line, "texture coordinate")).transpose()?;
+    if counts[1] == 0 && uv.is_some_and(|uv| uv.parse::<i64>().is_ok()) {
+        *undefined += 1;
+        return Ok((v, None));
+    }
+    let uv = uv.map(|uv| index(uv, counts[1], line, "texture coordinate")).transpose()?;
     Ok((v, uv))
 }
 

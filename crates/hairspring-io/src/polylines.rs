@@ -1,6 +1,7 @@
 //! The polylines of an `.obj` file, which are the strands of a groom.
 
 use crate::{
+    Problem,
     chains::{self, Chains},
     strand_attributes::StrandGroups,
 };
@@ -53,25 +54,35 @@ impl Polylines {
         }
     }
 
-    /// Joins segments of a group that share an end, in any order and direction, if the file has nothing but segments.
-    /// Returns a note if there are any. With a vertex of more than two segments, nothing is joined.
-    pub fn join(&mut self) -> Option<String> {
+    /// Joins segments of a group in any order and direction, if the file has nothing but segments. Two are joined where
+    /// one ends and the other begins, and where the numbers of their vertices increase or decrease through both. Other
+    /// vertices of two or more segments are roots that strands share, or branches, where strands stay separate.
+    /// Returns notes about what was joined, and about branches.
+    pub fn join(&mut self) -> Vec<String> {
         self.uvs.sort_unstable();
         if self.has_polylines {
-            return None;
+            return Vec::new();
         }
-        let mut vertices: Vec<(usize, u32)> = Vec::with_capacity(self.order.len());
-        let mut edges: Vec<Vec<[u32; 2]>> = vec![Vec::new(); self.groups.count()];
-        for (line, group) in self.offsets.windows(2).zip(&self.groups.of_strands) {
-            let line = &self.order[line[0] as usize..line[1] as usize];
-            vertices.extend(line.iter().map(|vertex| (*group, *vertex)));
-            edges[*group].extend(line.windows(2).map(|edge| [edge[0], edge[1]]));
+        let mut segments: Vec<Vec<Segment>> = vec![Vec::new(); self.groups.count()];
+        for (line, (of, group)) in self.offsets.windows(2).zip(&self.groups.of_strands).enumerate() {
+            let vertices = &self.order[of[0] as usize..of[1] as usize];
+            segments[*group]
+                .extend(vertices.windows(2).map(|ends| Segment { ends: [ends[0], ends[1]], line }));
         }
-        vertices.sort_unstable();
-        vertices.windows(2).find(|pair| pair[0] == pair[1])?;
-        let joined: Vec<Chains> =
-            edges.iter().map(|edges| chains::join(edges)).collect::<Result<_, _>>().ok()?;
-        let before = self.offsets.len() - 1;
+        let mut branches = 0;
+        let joined: Result<Vec<Chains>, _> =
+            segments.iter().map(|segments| join_segments(segments, &mut branches)).collect();
+        let mut notes = Vec::new();
+        if branches > 0 {
+            notes.push(format!(
+                "strands branch at {branches} vertices, but a strand has one root and one tip; they are separate strands there; export the curves, not a mesh"
+            ));
+        }
+        let before = self.offsets.len().saturating_sub(1);
+        let Ok(joined) = joined else { return notes };
+        if joined.iter().map(|chains| chains.offsets.len() - 1).sum::<usize>() == before {
+            return notes;
+        }
         (self.order, self.offsets) = (Vec::new(), vec![0]);
         self.groups.of_strands.clear();
         for (group, chains) in joined.into_iter().enumerate() {
@@ -80,7 +91,9 @@ impl Polylines {
             self.offsets.extend(chains.offsets.iter().skip(1).map(|end| first + end));
             self.groups.of_strands.resize(self.offsets.len() - 1, group);
         }
-        Some(format!("{before} lines that share their ends are joined to {} strands", self.offsets.len() - 1))
+        let strands = self.offsets.len() - 1;
+        notes.push(format!("{before} lines that share their ends are joined to {strands} strands"));
+        notes
     }
 
     /// Number of polylines that end where they begin.
@@ -102,4 +115,66 @@ impl Polylines {
         let at = self.uvs.partition_point(|uv| uv[0] < vertex);
         self.uvs.get(at).filter(|uv| uv[0] == vertex).map(|uv| uv[1])
     }
+}
+
+/// Two vertices of a line, in its direction.
+#[derive(Clone, Copy)]
+struct Segment {
+    ends: [u32; 2],
+    /// Index of the line.
+    line: usize,
+}
+
+/// Joins the segments of a group to strands. Adds the number of vertices where strands branch to `branches`.
+fn join_segments(segments: &[Segment], branches: &mut usize) -> Result<Chains, Problem> {
+    // Vertex, segment, and whether the segment ends there.
+    let mut ends: Vec<(u32, usize, bool)> = (segments.iter().enumerate())
+        .flat_map(|(k, segment)| [(segment.ends[0], k, false), (segment.ends[1], k, true)])
+        .collect();
+    ends.sort_unstable();
+    // Ends that are not joined get a copy of their vertex each, in the order of the vertices.
+    let mut copies: Vec<u32> = Vec::with_capacity(ends.len());
+    let mut edges = vec![[0u32; 2]; segments.len()];
+    let mut shared_roots = Vec::new();
+    for at in ends.chunk_by(|a, b| a.0 == b.0) {
+        let ending = at.iter().filter(|end| end.2).count();
+        *branches += usize::from(at.len() > 2 && (1..at.len()).contains(&ending));
+        let alone = continue_each_other(at, segments);
+        let mut open = None;
+        for (vertex, segment, ends_here) in at {
+            let line = segments[*segment].line;
+            let id = match open.take() {
+                Some((id, before)) if alone || before == line => id,
+                _ => {
+                    let id = copies.len() as u32;
+                    copies.push(*vertex);
+                    open = Some((id, line));
+                    id
+                }
+            };
+            edges[*segment][usize::from(*ends_here)] = id;
+            if !alone && ending == 0 && at.len() > 1 {
+                shared_roots.push(id);
+            }
+        }
+    }
+    let mut chains = chains::join(&edges)?;
+    for of in chains.offsets.windows(2) {
+        let strand = &mut chains.order[of[0] as usize..of[1] as usize];
+        let is_root = |id: Option<&u32>| id.is_some_and(|id| shared_roots.binary_search(id).is_ok());
+        if is_root(strand.last()) && !is_root(strand.first()) {
+            strand.reverse();
+        }
+    }
+    chains.order.iter_mut().for_each(|id| *id = copies[*id as usize]);
+    Ok(chains)
+}
+
+/// Returns whether the ends at a vertex are those of two segments that continue each other.
+fn continue_each_other(at: &[(u32, usize, bool)], segments: &[Segment]) -> bool {
+    let [(vertex, a, a_ends), (_, b, b_ends)] = *at else { return false };
+    let other = |segment: usize, ends_here: bool| segments[segment].ends[usize::from(!ends_here)];
+    let mut others = [other(a, a_ends), other(b, b_ends)];
+    others.sort_unstable();
+    a_ends != b_ends || (others[0] < vertex && vertex < others[1])
 }

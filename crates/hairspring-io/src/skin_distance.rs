@@ -73,12 +73,19 @@ impl SkinDistance {
                 100.0 * reversed
             ));
         }
-        let remedy = "they are held there; set `scale`, `up` or `transform` of the [[groom]], or `scale` of the [body], if that is wrong";
+        let remedy = "are held there; set `scale`, `up` or `transform` of the [[groom]], or `scale` of the [body], if that is wrong";
         if median > FAR {
-            return Some(format!("the roots are {median:.3} m from the skin (at most {max:.3} m); {remedy}"));
+            return Some(format!(
+                "the roots are {median:.3} m from the skin (at most {max:.3} m); they {remedy}"
+            ));
+        }
+        if max > FAR && reversed > 0.0 {
+            return Some(format!(
+                "some roots are up to {max:.3} m from the skin (median {median:.3} m), and some strands begin away from the skin and end on it; set `reverse = \"nearest\"` in the [[groom]] to turn only these; other roots {remedy}"
+            ));
         }
         (max > FAR).then(|| {
-            format!("some roots are up to {max:.3} m from the skin (median {median:.3} m); {remedy}")
+            format!("some roots are up to {max:.3} m from the skin (median {median:.3} m); they {remedy}")
         })
     }
 }

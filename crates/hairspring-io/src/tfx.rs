@@ -10,12 +10,15 @@ use crate::{
     units::{Axis, FileUnits},
 };
 use bytemuck::{Pod, Zeroable, bytes_of, cast_slice};
-use glam::Vec4;
+use glam::{Vec2, Vec4};
 use hairspring::groom::{DEFAULT_RADIUS, Groom};
 use std::io::{self, Write};
 
 /// First reserved word of our own files ("HSPR"): meters, Y up, true radii.
 const MARK: u32 = u32::from_le_bytes(*b"HSPR");
+
+/// Bytes after the last array that align the end of a file, and are fewer than this.
+const PADDING: usize = 16;
 
 /// Header of version 4.0, 160 bytes. An offset of 0 means that the array is absent.
 #[derive(Clone, Copy, Pod, Zeroable)]
@@ -65,8 +68,11 @@ struct Layout {
     /// Floats per position: 3 or 4.
     width: usize,
     strand_uvs: u32,
+    point_uvs: u32,
     thickness: u32,
     colors: u32,
+    /// Whether the file has a table of guides, whose length the header does not name.
+    has_guide_table: bool,
     ours: bool,
     notes: Vec<String>,
 }
@@ -100,29 +106,64 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     }
     let mut groom = Groom::default();
     bytes.seek(layout.positions, "the array of positions")?;
+    let mut notes = layout.notes;
     groom.points = match layout.width {
         3 => bytes.array(points, "the positions")?,
-        _ => bytes.array::<Vec4>(points, "the positions")?.iter().map(|p| p.truncate()).collect(),
+        _ => {
+            let positions: Vec<Vec4> = bytes.array(points, "the positions")?;
+            notes.extend(fixed_points(&positions, points_per_strand));
+            positions.iter().map(|p| p.truncate()).collect()
+        }
     };
+    let mut end = bytes.at();
     groom.offsets = (0..=strands).map(|s| (s * points_per_strand) as u32).collect();
     if layout.strand_uvs != 0 {
         bytes.seek(layout.strand_uvs as usize, "the array of strand texture coordinates")?;
         groom.root_uvs = bytes.array(strands, "the strand texture coordinates")?;
+        end = end.max(bytes.at());
     }
     if layout.colors != 0 {
         bytes.seek(layout.colors as usize, "the array of colors")?;
         let colors: Vec<Vec4> = bytes.array(points, "the colors")?;
         groom.colors = colors.iter().map(|c| c.truncate()).collect();
+        end = end.max(bytes.at());
     }
     let radii = if layout.thickness != 0 {
         bytes.seek(layout.thickness as usize, "the array of thicknesses")?;
         let diameters: Vec<f32> = bytes.array(strands, "the thicknesses")?;
+        end = end.max(bytes.at());
         Some(diameters.iter().flat_map(|d| std::iter::repeat_n(d * 0.5, points_per_strand)).collect())
     } else {
         None
     };
+    if layout.point_uvs != 0 {
+        end = end.max((layout.point_uvs as usize).saturating_add(points * size_of::<Vec2>()));
+    }
+    let extra = data.len().saturating_sub(end);
+    if extra >= PADDING && !layout.has_guide_table {
+        notes.push(format!(
+            "{extra} bytes after the last array are not used; the header names fewer strands or arrays than the file holds"
+        ));
+    }
     let units = FileUnits { scale: layout.ours.then_some(1.0), up: Some(Axis::Y) };
-    Ok(Read { groom, radii, true_radii: layout.ours, units, notes: layout.notes })
+    Ok(Read { groom, radii, true_radii: layout.ours, units, notes })
+}
+
+/// Describes points with an inverse mass of 0, which fixes them. It is 0 at the first two points of each strand, which
+/// the scalp moves.
+fn fixed_points(positions: &[Vec4], points_per_strand: usize) -> Option<String> {
+    let strands = positions.chunks_exact(points_per_strand.max(1));
+    let is_fixed = |i: usize, p: &Vec4| i >= 2 && p.w == 0.0;
+    let of_strand = |strand: &[Vec4]| strand.iter().enumerate().filter(|(i, p)| is_fixed(*i, p)).count();
+    let fixed: usize = strands.clone().map(of_strand).sum();
+    let tips = strands.filter_map(<[Vec4]>::last).filter(|p| is_fixed(points_per_strand - 1, p)).count();
+    match fixed {
+        0 => None,
+        n if n == tips => Some(format!("{n} of its tips are marked as fixed; they are simulated as free")),
+        n => Some(format!(
+            "{n} points after the first two of their strands have an inverse mass of 0, which marks them as fixed; they are simulated as free"
+        )),
+    }
 }
 
 fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
@@ -150,6 +191,8 @@ fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
                 positions: h.positions as usize,
                 width: 3,
                 strand_uvs: h.strand_uvs,
+                point_uvs: h.point_uvs,
+                has_guide_table: h.guides != 0,
                 thickness: h.thickness,
                 colors: h.colors,
                 ours: false,
@@ -164,6 +207,8 @@ fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
                 positions: h.positions as usize,
                 width: 4,
                 strand_uvs: h.strand_uvs,
+                point_uvs: h.point_uvs,
+                has_guide_table: false,
                 thickness: h.thickness,
                 colors: h.colors,
                 ours: h.reserved[0] == MARK,

@@ -60,6 +60,16 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
             }
             "numstrands" => named = Some(words.number("the number of strands")?),
             "strand" => strand(&mut words, &mut groom)?,
+            other if finite(other).is_some() && groom.strand_count() > 0 => {
+                let s = groom.strand_count() - 1;
+                return Err(Problem::line(
+                    words.line(),
+                    format!(
+                        "strand {s} has more points than its `numVerts` names ({}); correct `numVerts`",
+                        groom.strand(s).len()
+                    ),
+                ));
+            }
             other => {
                 return Err(Problem::line(
                     words.line(),

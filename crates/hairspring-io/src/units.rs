@@ -1,6 +1,7 @@
 //! Conversion from a file's units and axes to meters and Y up.
 
-use glam::{Quat, Vec3};
+use crate::strays::Strays;
+use glam::{Affine3A, Quat, Vec3};
 use hairspring::{
     body::{Body, Clip, Joint, Trs},
     groom::Groom,
@@ -52,20 +53,67 @@ const STRAND: std::ops::RangeInclusive<f32> = 0.002..=2.0;
 const UNITS: [(f32, &str); 4] =
     [(1.0, "meters"), (0.1, "decimeters"), (0.01, "centimeters"), (0.001, "millimeters")];
 
-/// Returns the scale and rotation to apply to a body, and adds a note about whatever was guessed. `extent` is
-/// the box's longest side [file units].
+/// A body that a mesh belongs to, such as that of the eyes or a collision mesh. The mesh probably has the same unit.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WholeBody {
+    /// Meters in one unit of the body's file [m].
+    pub scale: f32,
+    /// The box around the body [m].
+    pub bounds: [Vec3; 2],
+}
+
+/// Distance of a mesh from the body that it belongs to, at most, over the longest side of the body [1].
+const REACH: f32 = 0.25;
+/// Longest side of a mesh below which it may rather have a larger unit, over that of the body [1].
+const SMALL: f32 = 0.05;
+
+impl WholeBody {
+    /// Whether a mesh has the unit of the body. `bounds` is the box around it [file units, Y up], `place` is its
+    /// placement in the scene, and `own` is the unit that its size alone suggests [m].
+    fn shares_unit(&self, bounds: [Vec3; 2], place: Affine3A, own: f32) -> bool {
+        let [lo, hi] = self.bounds;
+        let size = (hi - lo).max_element();
+        let placed = |scale: f32| {
+            let corner = |k: usize| Vec3::from([0, 1, 2].map(|axis| bounds[(k >> axis) & 1][axis]));
+            self::bounds((0..8).map(|k| place.transform_point3(corner(k) * scale)))
+        };
+        let within_reach = |scale: f32| {
+            let (low, high) = placed(scale);
+            let reach = Vec3::splat(REACH * size);
+            low.cmple(hi + reach).all() && high.cmpge(lo - reach).all()
+        };
+        let (low, high) = placed(self.scale);
+        within_reach(self.scale) && ((high - low).max_element() > SMALL * size || !within_reach(own))
+    }
+}
+
+/// Returns the scale and rotation to apply to a mesh, and adds a note about whatever was guessed. `points` are those
+/// of the mesh [file units]. `whole` is the body that it belongs to, and its placement.
 pub(crate) fn settle(
     options: &ReadOptions,
     file: FileUnits,
-    extent: f32,
+    points: &[Vec3],
+    whole: Option<(WholeBody, Affine3A)>,
     notes: &mut Vec<String>,
 ) -> (f32, Quat) {
+    let turn = turn_of(options.up.or(file.up).unwrap_or(Axis::Y));
     let scale = options.scale.or(file.scale).unwrap_or_else(|| {
-        let (scale, note) = guess_body(extent);
+        let (lo, hi) = bounds(points.iter().filter(|p| p.is_finite()).map(|p| turned(turn, *p)));
+        let extent = (hi - lo).max_element();
+        let (own, note) = guess_body(extent);
+        if let Some((body, place)) = whole
+            && body.shares_unit([lo, hi], place, own)
+        {
+            let (unit, size) = (unit_name(body.scale), extent * body.scale);
+            notes.push(format!(
+                "the file has no unit; read in that of the body, {unit} (its longest side is then {size:.3} m); set `scale` to change it"
+            ));
+            return body.scale;
+        }
         notes.extend(note);
-        scale
+        own
     });
-    (scale, turn_of(options.up.or(file.up).unwrap_or(Axis::Y)))
+    (scale, turn)
 }
 
 /// Chooses a groom's unit by the body that it grows on. Given the two ends of some strands, Y up, in the
@@ -121,8 +169,8 @@ fn guess_body(extent: f32) -> (f32, Option<String>) {
 /// Guesses the meters per unit of a groom, and returns a note about it: the unit that puts its strands on the
 /// body, otherwise the one that gives plausible sizes.
 fn guess_groom(groom: &Groom, turn: Quat, fit: Option<FitUnit<'_>>) -> (f32, Option<String>) {
-    let strays = strays(groom);
-    let extent = groom_extent(groom, strays);
+    let strays = Strays::of(groom);
+    let extent = strays.extent;
     let length = median_length(groom);
     if !(extent.is_finite() && extent > 0.0) {
         return (1.0, None);
@@ -148,9 +196,7 @@ fn guess_groom(groom: &Groom, turn: Quat, fit: Option<FitUnit<'_>>) -> (f32, Opt
         ),
         None => note(scale, size, GROOM.contains(&size)),
     };
-    if strays > 0 {
-        text += &format!(" ({strays} points at the origin, far from the others, do not count)");
-    }
+    text.extend(strays.note());
     (scale, Some(text))
 }
 
@@ -198,37 +244,6 @@ fn note(scale: f32, size: f32, plausible: bool) -> String {
     }
 }
 
-/// Number of points exactly at the origin that are no part of the hair: at most a tenth of all, and farther
-/// from the box of the others than its longest side.
-fn strays(groom: &Groom) -> usize {
-    let at_origin = groom.points.iter().filter(|p| **p == Vec3::ZERO).count();
-    if at_origin == 0 || at_origin * 10 > groom.points.len() {
-        return 0;
-    }
-    let others = groom.points.iter().copied().filter(|p| *p != Vec3::ZERO && p.is_finite());
-    let (lo, hi) = bounds(others);
-    let outside = Vec3::ZERO.clamp(lo, hi).length();
-    if outside > 0.5 * (hi - lo).max_element() { at_origin } else { 0 }
-}
-
-/// The longest side of the box around a groom [file units]. Stray points do not count: those at the origin, and
-/// the hundredth of all points that is farthest out, if the box without them is less than half as long.
-fn groom_extent(groom: &Groom, strays: usize) -> f32 {
-    let counts = |p: &Vec3| p.is_finite() && (strays == 0 || *p != Vec3::ZERO);
-    let points = || groom.points.iter().copied().filter(counts);
-    let whole = extent(points());
-    let step = groom.points.len().div_ceil(20_000).max(1);
-    let inner = |axis: usize| {
-        let mut along: Vec<f32> = points().step_by(step).map(|p| p[axis]).collect();
-        along.sort_by(f32::total_cmp);
-        let cut = along.len() / 100;
-        let at = |i: usize| along.get(i).copied().unwrap_or(0.0);
-        at(along.len().saturating_sub(1 + cut)) - at(cut)
-    };
-    let inner = inner(0).max(inner(1)).max(inner(2));
-    if inner > 0.0 && inner < 0.5 * whole { inner } else { whole }
-}
-
 /// The median length of the strands [file units]; 0 if there are none.
 fn median_length(groom: &Groom) -> f32 {
     let mut lengths: Vec<f32> =
@@ -243,8 +258,14 @@ pub(crate) fn extent(points: impl IntoIterator<Item = Vec3>) -> f32 {
     (hi - lo).max_element().max(0.0)
 }
 
+/// The box around the finite points in `points`; `None` if there are none.
+pub(crate) fn bounds_of(points: &[Vec3]) -> Option<[Vec3; 2]> {
+    let (lo, hi) = bounds(points.iter().copied().filter(|p| p.is_finite()));
+    lo.is_finite().then_some([lo, hi])
+}
+
 /// The box around points; inverted if there are none.
-fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
+pub(crate) fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
     points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
 }
 

@@ -153,8 +153,10 @@ impl Simulation {
         let anchor = anchor.map_or_else(RigidTransform::default, |pose| pose.0);
         let roots = match (&roots, &rotations) {
             (None, None) => {
-                let carried =
-                    |p: &Vec3| RigidTransform { translation: anchor.point(*p), rotation: anchor.rotation };
+                let carried = |p: &Vec3| RigidTransform {
+                    translation: anchor.transform_point(*p),
+                    rotation: anchor.rotation,
+                };
                 self.rest_roots.iter().map(carried).collect()
             }
             (None, Some(_)) => return Err(setting("`rotations` needs `roots`")),

@@ -30,7 +30,7 @@ use hairspring::{
     forces::charge::Charged,
     groom::Groom,
     material::Material,
-    settings::{Effects, Neighbours, OutOfRange, Range, Solver, Validate, Volume, Wind},
+    settings::{Effects, Neighbours, OutOfRange, Range, Solver, Validate, Volume, Wind, validate_gravity},
 };
 
 /// One hairstyle of a scene, with its settings for simulation and rendering.
@@ -183,11 +183,7 @@ impl Scene {
         for (place, part) in parts {
             part.validate().map_err(|error| SceneError { place, error })?;
         }
-        if !self.gravity.is_finite() {
-            let error = OutOfRange { key: "gravity".into(), expected: "three finite numbers [m/s²]" };
-            return Err(SceneError { place: "scene".into(), error });
-        }
-        Ok(())
+        validate_gravity(self.gravity).map_err(|error| SceneError { place: "scene".into(), error })
     }
 }
 

@@ -67,7 +67,7 @@ impl VertexCache {
             let motion = fit(pairs, rotation);
             rotation = motion.rotation;
             for p in frame.iter_mut() {
-                *p = motion.inverse_point(*p);
+                *p = motion.inverse_transform_point(*p);
             }
             samples.push(Trs { translation: motion.translation, rotation, ..Trs::default() });
         }
@@ -112,7 +112,7 @@ mod tests {
             rotation: Quat::from_euler(glam::EulerRot::XYZ, 0.2 * f as f32, -0.1 * f as f32, 0.3),
             translation: Vec3::new(f as f32, -1.0, 0.5),
         };
-        let frames = (0..12).map(|f| rest.iter().map(|p| motion(f).point(*p)).collect()).collect();
+        let frames = (0..12).map(|f| rest.iter().map(|p| motion(f).transform_point(*p)).collect()).collect();
         let mut cache = VertexCache { rate: 24.0, frames };
         let vertices: Vec<u32> = (0..8).collect();
         let clip = cache.split_rigid_motion(&rest, &vertices);

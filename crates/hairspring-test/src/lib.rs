@@ -3,7 +3,6 @@
 
 use glam::Vec3;
 use hairspring::{
-    air::Air,
     collide::MovingCollider,
     groom::Groom,
     math::RigidTransform,
@@ -15,11 +14,11 @@ use std::path::PathBuf;
 pub const FRAME: f32 = 1.0 / 60.0;
 
 /// The pose of a head that has not moved.
-pub const REST: RigidTransform = RigidTransform { rotation: glam::Quat::IDENTITY, translation: Vec3::ZERO };
+pub const REST: RigidTransform = RigidTransform::IDENTITY;
 
 /// Returns a translation without rotation.
 pub fn translation(translation: Vec3) -> RigidTransform {
-    RigidTransform { translation, ..REST }
+    RigidTransform::from_translation(translation)
 }
 
 /// Returns `count` evenly spaced points from `start` to `end`.
@@ -29,7 +28,7 @@ pub fn line(start: Vec3, end: Vec3, count: usize) -> Vec<Vec3> {
 
 /// Returns the root pose of every strand for a head with this pose.
 pub fn roots(groom: &Groom, head: RigidTransform) -> Vec<RigidTransform> {
-    let root = |s| RigidTransform { translation: head.point(groom.strand(s)[0]), rotation: head.rotation };
+    let root = |s| RigidTransform::new(head.transform_point(groom.strand(s)[0]), head.rotation);
     (0..groom.strand_count()).map(root).collect()
 }
 
@@ -57,8 +56,7 @@ pub fn step_by(
     roots: &[RigidTransform],
     colliders: &[MovingCollider],
 ) -> StepReport {
-    let air = Air::default();
-    let report = simulation.step(&StepInput { dt, anchor: head, roots, colliders, air });
+    let report = simulation.step(&StepInput::new(dt, head, roots).with_colliders(colliders));
     assert_eq!(report.reset_strands, 0, "strands became non-finite and were reset");
     report
 }

@@ -168,7 +168,7 @@ impl Bench {
         };
         let (start, end) = (at(self.frame - 1), at(self.frame));
         for (pose, root) in self.poses.iter_mut().zip(&self.roots) {
-            pose.translation = end.point(*root);
+            pose.translation = end.transform_point(*root);
         }
         self.collider = MovingCollider { start, end, ..self.collider.clone() };
         self.simulation.step(&StepInput {

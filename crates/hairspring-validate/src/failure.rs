@@ -15,6 +15,9 @@ pub enum Failure {
     /// The swing turned back far too soon.
     #[error("the strand did not swing")]
     NoSwing,
+    /// The experiment cannot be set up with so few points.
+    #[error("the experiment needs {0} points or more")]
+    TooFewPoints(u32),
     /// The motion died out before it could be timed.
     #[error("the motion died out before it could be timed")]
     DiedOut,

@@ -148,9 +148,14 @@ pub struct Case {
     pub method: Method,
     /// Whether the number of points is fixed.
     pub points_fixed: bool,
-    /// Returns why the case does not pass at its defaults with an elastic model or with few points, if that
-    /// is known.
-    pub out_of_reach: fn(Method) -> Option<&'static str>,
+    /// Smallest number of points with which the experiment can be set up.
+    pub min_points: u32,
+    /// Number of points at which the case passes its defaults with the default method.
+    pub enough_points: u32,
+    /// Elastic models with which the case does not pass its defaults, at the default number of points.
+    pub fails_with: &'static [Model],
+    /// Returns why a run with these parameter values and this method fails, if it does and the cause is special to the case.
+    reason: fn(&[f64], &Method) -> Option<String>,
     reference: fn(&[f64]) -> Result<Vec<f64>, Failure>,
     measure: fn(&[f64], Method) -> Result<Vec<f64>, Failure>,
     sweep: plot::Sweep,
@@ -185,14 +190,38 @@ impl Outcome {
         }
     }
 
-    /// Returns why the case fails, if that is a known limitation of the elastic model or of the number of
-    /// points.
-    pub fn reason(&self) -> Option<&'static str> {
-        let reason_of = |case: &Case| (case.out_of_reach)(self.method);
-        // Applies to all cases, at more points than each has by default.
-        let held_back = self.method.model == Model::Springs && self.method.points >= 128;
-        let any = held_back.then_some(cases::HELD_BACK);
-        if self.pass() { None } else { case(self.case).and_then(reason_of).or(any) }
+    /// Returns why the outcome fails, in one sentence; `None` if it passes.
+    pub fn reason(&self) -> Option<String> {
+        let case = case(self.case).filter(|_| !self.pass())?;
+        let Method { points, substeps, model, integrator } = self.method;
+        if let Err(why @ Failure::TooFewPoints(_)) = self.measured {
+            return Some(why.to_string());
+        }
+        if integrator != case.method.integrator {
+            return Some(format!(
+                "the tolerance is for the integrator {}, and {} was used",
+                case.method.integrator.name(),
+                integrator.name()
+            ));
+        }
+        let values: Vec<f64> = self.parameters.iter().map(|(_, value)| *value).collect();
+        let special = (case.reason)(&values, &self.method);
+        Some(special.unwrap_or_else(|| match (&self.measured, &self.reference) {
+            // Applies to all cases, at more points than each has by default.
+            _ if model == Model::Springs && points >= 128 => cases::HELD_BACK.into(),
+            _ if points < case.enough_points => format!(
+                "{points} points are {} segments, too few for the strand's shape and motion; with {} points the default \
+                 parameters pass",
+                points - 1,
+                case.enough_points
+            ),
+            _ if substeps < case.method.substeps => format!(
+                "the tolerance is for {} substeps per frame, and {substeps} were used",
+                case.method.substeps
+            ),
+            (Err(why), _) | (_, Err(why)) => why.to_string(),
+            _ => format!("no cause is known for {points} points and {substeps} substeps per frame with these parameters"),
+        }))
     }
 
     /// Returns whether the error is within the tolerance. A failed measurement does not pass.
@@ -213,7 +242,7 @@ impl Case {
     pub fn run(&self, values: &[f64], method: Method) -> Vec<Outcome> {
         assert_eq!(values.len(), self.parameters.len(), "one value for each parameter of {}", self.name);
         let (reference, measured) =
-            rayon::join(|| (self.reference)(values), || (self.measure)(values, method));
+            rayon::join(|| (self.reference)(values), || self.measured(values, method));
         let pick = |from: &Result<Vec<f64>, Failure>, k: usize| match from {
             Ok(all) if all[k].is_finite() => Ok(all[k]),
             Ok(_) => Err(Failure::NotFinite),
@@ -231,6 +260,16 @@ impl Case {
             tolerance: quantity.tolerance,
         };
         self.quantities.iter().enumerate().map(outcome).collect()
+    }
+}
+
+impl Case {
+    /// Measures the quantities if the experiment can be set up with this number of points.
+    fn measured(&self, values: &[f64], method: Method) -> Result<Vec<f64>, Failure> {
+        match method.points < self.min_points {
+            true => Err(Failure::TooFewPoints(self.min_points)),
+            false => (self.measure)(values, method),
+        }
     }
 }
 

@@ -64,7 +64,7 @@ impl Case {
                 };
                 let (reference, measured) = rayon::join(
                     || evaluate(&places(from, to, log, CURVE), |x| (self.reference)(&values(x))),
-                    || evaluate(&places(from, to, log, POINTS), |x| (self.measure)(&values(x), method)),
+                    || evaluate(&places(from, to, log, POINTS), |x| self.measured(&values(x), method)),
                 );
                 let curves = self.quantities.iter().enumerate().map(|(k, quantity)| {
                     let pick = |from: &[(f64, Vec<f64>)]| from.iter().map(|(x, y)| [*x, y[k]]).collect();

@@ -26,7 +26,7 @@ pub struct HairDraw<'a> {
     pub colors: &'a [Vec3],
     /// Color and gloss.
     pub look: &'a HairLook,
-    /// Multiplies `radii`. Values above 1 are used if few strands stand for many. 1 draws hair as it is.
+    /// Multiplies `radii`. Values above 1 are used if few strands represent many. 1 draws hair as it is.
     pub width_scale: f32,
     /// Interpolation data with which a GPU can compute the strands' points itself. If it is used, only the
     /// length of `points` matters. The CPU renderer always draws `points`. Requires that
@@ -58,7 +58,7 @@ pub struct Quality {
     /// Default 0.12.
     pub smoothness: f32,
     /// Number of hairs that each strand is drawn as, 1 to 4: a wisp of loosely parallel hairs that share the
-    /// strand's light and depth. It is meant for pictures of few strands that stand for many, where a single
+    /// strand's light and depth. It is meant for pictures of few strands that represent many, where a single
     /// wide strand would look like a ribbon. Such a hair costs a third of a strand. Only the CPU renderer
     /// supports it; a GPU is fast enough to draw all strands. Default 1.
     pub wisp: u32,

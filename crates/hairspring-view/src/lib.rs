@@ -13,7 +13,7 @@
 //! | `tonemap` | filmic curve, sRGB, ordered dither | ACES |
 //!
 //! Coverage is exact area and not sampled, so there is no noise and no flicker. Blending is in depth order,
-//! so the result is not an approximation. Where pixels are at least half covered, some strands stand for all
+//! so the result is not an approximation. Where pixels are at least half covered, some strands represent all
 //! of them: each is drawn wider to make up for those that are left out. The same strands are drawn from frame
 //! to frame.
 //!

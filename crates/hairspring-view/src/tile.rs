@@ -101,7 +101,7 @@ const SURVEY: usize = 24;
 const THIN_FROM: f32 = 0.5;
 
 /// Fraction of strands that is drawn if `through` is the maximum transmittance of the pixels nearby. Each
-/// drawn strand stands for those that are left out and is drawn correspondingly wider (stochastic
+/// drawn strand represents those that are left out and is drawn correspondingly wider (stochastic
 /// simplification, Cook, Halstead, Planck & Ryu 2007). The contribution of a strand to a pixel stays below
 /// that of the strands in front of it. The coverage is right on average. Whether a strand is drawn depends on
 /// its index, so the same strands are drawn from frame to frame. No strand becomes wider than a pixel;

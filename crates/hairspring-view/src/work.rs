@@ -9,7 +9,7 @@ pub struct Work {
     pub segments: u64,
     /// Number of segments in tiles, counted once for each tile that they touch.
     pub filed: u64,
-    /// Number of these that were drawn: not hidden, and not left out because others stand for them.
+    /// Number of these that were drawn: not hidden, and not left out because others represent them.
     pub drawn: u64,
     /// Number of columns (or rows) of pixels that were traversed while drawing. Each blends two pixels, or as
     /// many as the strand is wide.

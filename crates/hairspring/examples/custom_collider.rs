@@ -1,13 +1,6 @@
 //! A collider of one's own: a torus, given by its signed distance.
 
-use glam::Vec3;
-use hairspring::{
-    air::Air,
-    collide::{Collider, ColliderShape, MovingCollider},
-    groom::Groom,
-    math::RigidTransform,
-    simulation::{Simulation, StepInput},
-};
+use hairspring::prelude::*;
 
 /// A torus around Y.
 #[derive(Debug)]
@@ -39,21 +32,14 @@ pub fn main() {
         (0..20).map(|i| root + Vec3::X * (0.01 * i as f32)).collect::<Vec<_>>()
     };
     let groom = Groom::from_strands((-3..=3).map(strand), 40e-6);
-    let roots: Vec<_> =
-        (0..7).map(|s| RigidTransform { translation: groom.strand(s)[0], ..Default::default() }).collect();
-    let solver = hairspring::settings::Solver { sag_free: false, ..Default::default() };
+    let solver = Solver { sag_free: false, ..Default::default() };
     let mut simulation = Simulation::builder(groom).solver(solver).build().expect("the groom is valid");
+    let anchor = RigidTransform::IDENTITY;
+    let roots = simulation.rigid_roots(anchor);
     let torus = ColliderShape::custom(Torus { major: 0.1, minor: 0.02 });
-    let colliders = [MovingCollider::at_rest(torus, RigidTransform::default())];
-    let anchor = RigidTransform::default();
+    let colliders = [MovingCollider::at_rest(torus, anchor)];
     for _ in 0..120 {
-        simulation.step(&StepInput {
-            dt: 1.0 / 60.0,
-            anchor,
-            roots: &roots,
-            colliders: &colliders,
-            air: Air::default(),
-        });
+        simulation.step(&StepInput::new(1.0 / 60.0, anchor, &roots).with_colliders(&colliders));
     }
     let (found, measure) = (simulation.contacts(&colliders), simulation.measure(&colliders));
     let contacts = found.points + found.segments;

@@ -1,14 +1,6 @@
 //! A force of one's own: a vortex that lifts hair, as a velocity that hair takes on.
 
-use glam::Vec3;
-use hairspring::{
-    air::Air,
-    forces::{ForceField, StrandView},
-    groom::Groom,
-    math::RigidTransform,
-    simulation::{Simulation, StepInput},
-};
-use std::sync::Arc;
+use hairspring::prelude::*;
 
 /// Hair near the axis takes on the velocity of a rotation about it.
 struct Vortex {
@@ -36,18 +28,12 @@ pub fn main() {
     let mut simulation =
         Simulation::builder(Groom::from_strands([strand], 40e-6)).build().expect("the groom is valid");
     let vortex = Vortex { center: Vec3::ZERO, spin: Vec3::Y * 20.0, rate: 30.0 };
-    let id = simulation.add_force(Arc::new(vortex));
+    let id = simulation.add_force(vortex);
 
-    let roots = [RigidTransform::default()];
-    let anchor = RigidTransform::default();
+    let anchor = RigidTransform::IDENTITY;
+    let roots = simulation.rigid_roots(anchor);
     let step = |simulation: &mut Simulation| {
-        simulation.step(&StepInput {
-            dt: 1.0 / 60.0,
-            anchor,
-            roots: &roots,
-            colliders: &[],
-            air: Air::default(),
-        });
+        simulation.step(&StepInput::new(1.0 / 60.0, anchor, &roots));
         let mut points = [Vec3::ZERO; 16];
         simulation.write_points(&mut points);
         points[15]

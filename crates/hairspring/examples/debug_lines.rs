@@ -1,14 +1,6 @@
 //! Lines for an engine's debug view: what each kind shows, and in which color.
 
-use glam::Vec3;
-use hairspring::{
-    air::Air,
-    collide::{ColliderShape, MovingCollider},
-    groom::Groom,
-    math::RigidTransform,
-    settings::Solver,
-    simulation::{DebugLineKind, DebugRenderMode, Simulation, StepInput},
-};
+use hairspring::prelude::*;
 
 /// Runs the example.
 pub fn main() {
@@ -18,16 +10,14 @@ pub fn main() {
         (0..16).map(|i| root + Vec3::X * (0.01 * i as f32)).collect::<Vec<_>>()
     };
     let groom = Groom::from_strands((0..10).map(strand), 40e-6);
-    let roots: Vec<_> =
-        (0..10).map(|s| RigidTransform { translation: groom.strand(s)[0], ..Default::default() }).collect();
     let solver = Solver { sag_free: false, ..Default::default() };
     let mut simulation = Simulation::builder(groom).solver(solver).build().expect("the groom is valid");
     let ball = ColliderShape::Sphere { center: Vec3::new(0.05, -0.02, 0.02), radius: 0.05 };
     // The engine's entity, which contacts report.
-    let colliders = [MovingCollider::at_rest(ball, RigidTransform::default()).with_user_data(42)];
-    let anchor = RigidTransform::default();
-    let input =
-        StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &colliders, air: Air::default() };
+    let anchor = RigidTransform::IDENTITY;
+    let colliders = [MovingCollider::at_rest(ball, anchor).with_user_data(42)];
+    let roots = simulation.rigid_roots(anchor);
+    let input = StepInput::new(1.0 / 60.0, anchor, &roots).with_colliders(&colliders);
     for _ in 0..60 {
         simulation.try_step(&input).expect("the input is finite");
     }

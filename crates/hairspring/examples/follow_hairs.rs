@@ -1,14 +1,6 @@
 //! Follow hairs: 20 strands of 200 are simulated, and the others are interpolated from them.
 
-use glam::{Quat, Vec3};
-use hairspring::{
-    air::Air,
-    follow::{Follow, assign_guides, choose_guides},
-    groom::Groom,
-    math::RigidTransform,
-    settings::Effects,
-    simulation::{Simulation, StepInput},
-};
+use hairspring::prelude::*;
 use std::sync::Arc;
 
 /// Runs the example.
@@ -30,22 +22,8 @@ pub fn main() {
     let mut of_guides = vec![Vec3::ZERO; simulation.point_count()];
     let mut all = vec![Vec3::ZERO; groom.point_count()];
     for frame in 1..=30 {
-        let anchor = RigidTransform {
-            translation: Vec3::X * (0.05 * (0.3 * frame as f32).sin()),
-            rotation: Quat::IDENTITY,
-        };
-        let at = |s: u32| RigidTransform {
-            translation: anchor.point(groom.strand(s as usize)[0]),
-            rotation: Quat::IDENTITY,
-        };
-        let roots: Vec<_> = guides.iter().map(|s| at(*s)).collect();
-        simulation.step(&StepInput {
-            dt: 1.0 / 60.0,
-            anchor,
-            roots: &roots,
-            colliders: &[],
-            air: Air::default(),
-        });
+        let anchor = RigidTransform::from_translation(Vec3::X * (0.05 * (0.3 * frame as f32).sin()));
+        simulation.step(&StepInput::new(1.0 / 60.0, anchor, &simulation.rigid_roots(anchor)));
         simulation.write_points(&mut of_guides);
         follow.update_guide_transforms(&of_guides, &turns);
         follow.interpolation(&of_guides, &[]).place(&mut all);

@@ -1,14 +1,6 @@
 //! A distance field from an array, as a game engine or a physics library has it.
 
-use glam::{UVec3, Vec3};
-use hairspring::{
-    air::Air,
-    collide::{ColliderShape, MovingCollider, SignedDistanceField},
-    groom::Groom,
-    math::RigidTransform,
-    settings::Solver,
-    simulation::{Simulation, StepInput},
-};
+use hairspring::{glam::UVec3, prelude::*};
 use std::sync::Arc;
 
 /// Runs the example.
@@ -32,16 +24,14 @@ pub fn main() {
         (0..20).map(|i| root + Vec3::X * (0.01 * i as f32)).collect::<Vec<_>>()
     };
     let groom = Groom::from_strands((-3..=3).map(strand), 40e-6);
-    let roots: Vec<_> =
-        (0..7).map(|s| RigidTransform { translation: groom.strand(s)[0], ..Default::default() }).collect();
     let solver = Solver { sag_free: false, ..Solver::default() };
     let mut simulation = Simulation::builder(groom).solver(solver).build().expect("the groom is valid");
     let shape = ColliderShape::Field(Arc::new(field));
-    let colliders = [MovingCollider::at_rest(shape, RigidTransform::default())];
-    let anchor = RigidTransform::default();
+    let anchor = RigidTransform::IDENTITY;
+    let roots = simulation.rigid_roots(anchor);
+    let colliders = [MovingCollider::at_rest(shape, anchor)];
     for _ in 0..120 {
-        let air = Air::default();
-        simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &colliders, air });
+        simulation.step(&StepInput::new(1.0 / 60.0, anchor, &roots).with_colliders(&colliders));
     }
     let (found, measure) = (simulation.contacts(&colliders), simulation.measure(&colliders));
     let contacts = found.points + found.segments;

@@ -1,26 +1,19 @@
 //! Rollback, as network games need it: keep a state, go on, return to it, and play again with other inputs.
 
-use glam::Vec3;
-use hairspring::{
-    air::Air,
-    groom::Groom,
-    math::RigidTransform,
-    settings::Wind,
-    simulation::{Simulation, StepInput},
-};
+use hairspring::prelude::*;
 
 /// Runs the example.
 pub fn main() {
     let strand = (0..16).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect::<Vec<_>>();
     let mut simulation =
         Simulation::builder(Groom::from_strands([strand], 40e-6)).build().expect("the groom is valid");
-    let roots = [RigidTransform::default()];
+    let anchor = RigidTransform::IDENTITY;
+    let roots = simulation.rigid_roots(anchor);
     let play = |simulation: &mut Simulation, frames: u32, wind: f32| {
         for _ in 0..frames {
             let wind = Wind { velocity: Vec3::X * wind, ..Wind::default() };
             let air = Air { wind, ..Air::default() };
-            let anchor = RigidTransform::default();
-            simulation.step(&StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &[], air });
+            simulation.step(&StepInput::new(1.0 / 60.0, anchor, &roots).with_air(air));
         }
         let mut points = [Vec3::ZERO; 16];
         simulation.write_points(&mut points);

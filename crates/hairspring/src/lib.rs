@@ -12,18 +12,12 @@
 //! let mut points = vec![Vec3::ZERO; simulation.point_count()];
 //! for frame in 1..=60 {
 //!     // The root moves by 10 cm in a second.
-//!     let pose = RigidTransform { translation: Vec3::X * (0.1 * frame as f32 / 60.0), rotation: Quat::IDENTITY };
-//!     simulation.step(&StepInput {
-//!         dt: 1.0 / 60.0,
-//!         anchor: pose,
-//!         roots: &[pose],
-//!         colliders: &[],
-//!         air: Air::default(),
-//!     });
+//!     let pose = RigidTransform::from_translation(Vec3::X * (0.1 * frame as f32 / 60.0));
+//!     simulation.step(&StepInput::new(1.0 / 60.0, pose, &simulation.rigid_roots(pose)));
 //! }
 //! simulation.write_points(&mut points);
 //! assert!((points[0].x - 0.1).abs() < 1e-6);
-//! # Ok::<(), hairspring::simulation::BuildError>(())
+//! # Ok::<(), BuildError>(())
 //! ```
 //!
 //! # Tour
@@ -41,7 +35,7 @@
 //! | hair on hair, as a volume or strand by strand | [`settings::Volume`], [`settings::Neighbours`] |
 //! | hairs that are drawn and not simulated | [`follow::Follow`] |
 //! | what to draw for debugging | [`simulation::Simulation::debug_lines`] |
-//! | contacts one by one, with the data of the user | [`simulation::Simulation::contact_points`] |
+//! | contacts one by one, with user data | [`simulation::Simulation::contact_points`] |
 //! | a character's mesh, skeleton and motion | [`body::Body`], [`body::Clip`] |
 //!
 //! The crate `hairspring-scene` plays whole scenes, and `hairspring-io` reads and writes files. The folder
@@ -83,8 +77,12 @@
 //! The minimum supported Rust version is 1.95. CI builds with it, and the lint `clippy::incompatible_msrv` refuses newer
 //! functions of the standard library. A higher minimum comes with a new minor version, not with a patch.
 //!
-//! Enums and reports are `#[non_exhaustive]`: a match needs a wildcard arm. Settings are plain structs that may get more
-//! fields in a minor version. Write `..Default::default()`, also where all present fields are given.
+//! Errors, reports and enums are `#[non_exhaustive]`: a match needs a wildcard arm. The exceptions are
+//! [`settings::When`] and [`settings::Range`]: a new kind of condition or range is a breaking change, because a program
+//! that shows them must know all of them. Settings are plain structs that may get more fields in a minor version. Write
+//! `..Default::default()`, also where all present fields are given.
+
+#![warn(missing_debug_implementations)]
 
 pub mod air;
 pub mod body;

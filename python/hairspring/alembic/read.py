@@ -12,6 +12,7 @@ from ..formats import FACTORS, MAX_POSITIONS, MAX_RATE, MAX_SAMPLES, Curves, For
 from ..formats import AbsentError, guides_from_flags
 from ..shapes import DEFAULT_RADIUS, check_counts, distinct, expand, fitted, naming, of_strands, on_curve, spacing, triangulate
 from ..shapes import varying_count
+from .guides import guides_of, repeats, strands_of_ids
 
 BASES = {"kBezierBasis": "bezier", "kBsplineBasis": "bspline", "kCatmullromBasis": "catmullRom"}
 SCOPES = {
@@ -265,17 +266,16 @@ def read_object(name: str, schema, above: list, to: np.ndarray, notes: list[str]
 
 def join(read: list[dict], notes: list[str]) -> Curves:
     """Joins the objects. Objects that repeat strands as guides only mark them."""
-    marks: set[int] = set()
     drawn = [r for r in read if r["guide"] is None or not r["guide"].all()]
+    marks: list[int] = []
     if drawn:
-        known = {int(i) for r in drawn if r["ids"] is not None for i in r["ids"]}
-        for r in read:
-            if not any(r is d for d in drawn):
-                ids = set() if r["ids"] is None else {int(i) for i in r["ids"]}
-                if ids and ids <= known:
-                    marks |= ids
-                else:
-                    drawn.append(r)
+        known = strands_of_ids(drawn)
+        for r in [r for r in read if not any(r is d for d in drawn)]:
+            repeated = repeats(r, known)
+            if repeated is None:
+                drawn.append(r)
+            else:
+                marks += repeated
     else:
         drawn = read
     strands = [s for r in drawn for s in r["strands"]]
@@ -308,60 +308,16 @@ def join(read: list[dict], notes: list[str]) -> Curves:
         if any(a is not None for a in each):
             filled = [np.ones(len(r["strands"])) if a is None else a for r, a in zip(drawn, each)]
             curves.factors[name] = np.maximum(np.concatenate(filled), 0).astype(np.float32)
-    if marks:
-        ids = np.concatenate([np.full(len(r["strands"]), -1) if r["ids"] is None else r["ids"] for r in drawn])
-        flags |= np.isin(ids, sorted(marks))
+    flags[marks] = True
     closest, weights = guides_of(drawn, notes)
     if closest is not None:
         curves.guides, curves.guide_weights = closest, weights
     if curves.guides is None and flags.any():
-        found = guides_from_flags(flags, points[offsets[:-1]])
+        objects = np.repeat(np.arange(len(drawn)), [len(r["strands"]) for r in drawn])
+        found = guides_from_flags(flags, points[offsets[:-1]], objects)
         if found:
             curves.guides, curves.guide_weights = found
     return curves
-
-
-def guides_of(drawn: list[dict], notes: list[str]) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """The guides of each strand and their weights. `groom_closest_guides` names strands by `groom_id`: those of the objects of
-    guides, or else those of its own object. A guide follows itself."""
-    with_guides = [r["closest"] is not None and r["weights"] is not None for r in drawn]
-    if not any(with_guides):
-        return None, None
-    first = np.cumsum([0] + [len(r["strands"]) for r in drawn])
-    are_guides = [r["guide"] is not None and bool(r["guide"].all()) for r in drawn]
-
-    def by_id(k: int) -> dict[int, int]:
-        r = drawn[k]
-        ids = np.arange(len(r["strands"])) if r["ids"] is None else r["ids"]
-        return {int(i): int(first[k]) + s for s, i in enumerate(ids)}
-
-    of_guides: dict[int, int] = {}
-    for k, guides in enumerate(are_guides):
-        of_guides |= by_id(k) if guides else {}
-    closest, weights = [], []
-    for k, r in enumerate(drawn):
-        own = np.arange(first[k], first[k + 1])
-        if with_guides[k]:
-            known = of_guides or by_id(k)
-            rows = np.array([[known.get(int(i), -1) for i in row] for row in r["closest"]])
-            shares = r["weights"].astype(np.float64)
-        elif are_guides[k]:
-            rows, shares = np.repeat(own[:, None], 3, axis=1), np.tile([1.0, 0.0, 0.0], (len(own), 1))
-        else:
-            notes.append(f"{r['name']} has no groom_closest_guides, so the guides of all objects are left out")
-            return None, None
-        closest.append(rows)
-        weights.append(shares)
-    found, total = np.concatenate(closest), np.concatenate(weights)
-    # A guide without weight does not matter.
-    found = np.where((found < 0) & (total == 0), found.max(axis=1, keepdims=True), found)
-    if found.min() < 0:
-        notes.append("groom_closest_guides names strands that do not exist; left out")
-        return None, None
-    if not np.isfinite(total).all() or total.min() < 0 or total.sum(axis=1).min() <= 0:
-        notes.append("groom_guide_weights are not finite, below 0 or all 0; left out, with the guides")
-        return None, None
-    return found.astype(np.uint32), (total / total.sum(axis=1, keepdims=True)).astype(np.float32)
 
 
 def sample_times(meshes: list[tuple], notes: list[str]) -> tuple[np.ndarray, float]:

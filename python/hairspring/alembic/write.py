@@ -53,8 +53,8 @@ class CurvesWriter:
 
     Each groom becomes one object of linear curves with positions, velocities, widths and bounds over time, and `groom_version_major`
     1, `groom_version_minor` 5, `groom_id`, `groom_width`, and if the groom has them `groom_group_id`, `groom_root_uv`, `groom_color`,
-    `groom_closest_guides` and `groom_guide_weights`. If only some strands were simulated, they are a second object with
-    `groom_guide` 1 and the same `groom_id`.
+    `groom_closest_guides` and `groom_guide_weights`. The numbers of `groom_id` are unique in the file. If only some strands of the
+    file were simulated, those of each groom are a second object with `groom_guide` 1 and the same `groom_id`.
 
     Frame n is at the time n / fps, and samples between frames are at equal distances. The file appears under its name when `finish` returns.
     """
@@ -88,16 +88,20 @@ class CurvesWriter:
         sampling = AbcCoreAbstract.TimeSampling(step, description.first_frame / description.fps)
         self.sampling = Abc.Argument(self.archive.addTimeSampling(sampling))
         taken: set[str] = set()
-        first = 0
+        # Where all strands were simulated, none is marked. Otherwise also the guides of a groom without other strands are.
+        some = not all(groom.guide.all() for groom in description.grooms)
+        first, first_id = 0, 0
         for groom in description.grooms:
             name = identifier(groom.name, taken)
             strands = np.arange(len(groom.counts))
-            self._add(name, groom, strands, first, guide=False)
-            if groom.guide.any() and not groom.guide.all():
-                self._add(identifier(f"{name}_guides", taken), groom, np.flatnonzero(groom.guide), first, guide=True)
-            first += len(groom.points)
+            self._add(name, groom, strands, first, first_id, guide=False)
+            if some and groom.guide.any():
+                guides = np.flatnonzero(groom.guide)
+                self._add(identifier(f"{name}_guides", taken), groom, guides, first, first_id, guide=True)
+            first, first_id = first + len(groom.points), first_id + len(groom.counts)
 
-    def _add(self, name: str, groom: MovingGroom, strands: np.ndarray, first: int, guide: bool) -> None:
+    def _add(self, name: str, groom: MovingGroom, strands: np.ndarray, first: int, first_id: int, guide: bool) -> None:
+        """Adds the object of these strands of a groom, whose points begin at `first` and whose ids begin at `first_id`."""
         counts = groom.counts[strands]
         start = groom.offsets[strands].astype(np.int64)
         index = np.repeat(start - np.concatenate([[0], np.cumsum(counts)[:-1]]), counts) + np.arange(counts.sum())
@@ -116,7 +120,7 @@ class CurvesWriter:
         add("Int16", "groom_version_minor", _short(VERSION[1]), Scope.kConstantScope)
         if guide:
             add("Int16", "groom_guide", _short(1), Scope.kConstantScope)
-        add("Int32", "groom_id", _ints(strands), Scope.kUniformScope)
+        add("Int32", "groom_id", _ints(first_id + strands), Scope.kUniformScope)
         add("Float", "groom_width", _floats(2 * groom.radii[index]), Scope.kVertexScope)
         if groom.groups is not None:
             add("Int32", "groom_group_id", _ints(groom.groups[strands]), Scope.kUniformScope)
@@ -126,7 +130,7 @@ class CurvesWriter:
         if groom.colors is not None:
             add("C3f", "groom_color", _colors(groom.colors[index]), Scope.kVertexScope)
         if groom.guides is not None and not guide:
-            closest = imath.V3iArrayFromBuffer(np.ascontiguousarray(groom.guides, np.int32))
+            closest = imath.V3iArrayFromBuffer(np.ascontiguousarray(first_id + groom.guides.astype(np.int64), np.int32))
             add("V3i", "groom_closest_guides", closest, Scope.kUniformScope)
             add("V3f", "groom_guide_weights", _vectors(groom.guide_weights), Scope.kUniformScope)
 

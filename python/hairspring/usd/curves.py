@@ -13,6 +13,9 @@ from ..shapes import DEFAULT_RADIUS, check_counts, expand, fitted, of_strands, o
 from .instances import placed
 from .stage import because, faults, first_time, left_out, open_stage, primvar, space, unused_primvars, world_of
 
+PARTS = ("radii", "groups", "uvs", "colors", "objects", "flags", "closest", "weights")
+"""What is read of each strand, besides its factors of the material."""
+
 
 def read_curves(path: Path, scale: float | None = None, up: str | None = None) -> Curves:
     """Reads all BasisCurves of a stage as one groom, at their first time sample. A PointInstancer gives a copy for each instance.
@@ -24,7 +27,7 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
     stage = open_stage(path)
     to = space(stage, scale, up)
     strands: list[np.ndarray] = []
-    parts: dict[str, list] = {name: [] for name in ("radii", "groups", "uvs", "colors", "flags", "closest", "weights", *FACTORS)}
+    parts: dict[str, list] = {name: [] for name in (*PARTS, *FACTORS)}
     names: list[str] = []
     notes = faults(stage) + left_out(stage, UsdGeom.BasisCurves, (UsdGeom.NurbsCurves, UsdGeom.HermiteCurves), "BasisCurves")
     found = placed(stage, UsdGeom.BasisCurves, to, notes)
@@ -97,6 +100,7 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
                     without = np.nan if stiffer is None or name != "stiffness" else stiffer
                     parts[name].append(without if factor is None else float(np.mean(factor)))
                 parts["groups"].append(float(np.ravel(ids[s])[0]) if ids is not None else group)
+                parts["objects"].append(group)
                 parts["flags"].append(bool(np.any(flags[s])) if flags is not None else False)
                 if closest is not None and weights is not None:
                     own, shares = np.ravel(closest[s])[:3], np.ravel(weights[s])[:3]
@@ -158,7 +162,7 @@ def assemble(strands: list[np.ndarray], parts: dict[str, list], names: list[str]
         else:
             notes.append("`groom_closest_guides` names strands that do not exist; left out")
     if curves.guides is None and any(parts["flags"]):
-        found = guides_from_flags(np.array(parts["flags"]), points[offsets[:-1]])
+        found = guides_from_flags(np.array(parts["flags"]), points[offsets[:-1]], np.array(parts["objects"]))
         if found:
             curves.guides, curves.guide_weights = found
     return curves

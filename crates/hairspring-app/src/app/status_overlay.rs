@@ -43,7 +43,7 @@ impl App {
                     ui.add(egui::ProgressBar::new(done as f32 / all as f32).text(done_so_far));
                     if ui
                         .button("Stop")
-                        .on_hover_text("After the current frame; finished files stay")
+                        .on_hover_text("Stops after the current frame. Finished files are kept.")
                         .clicked()
                     {
                         baker.cancel();
@@ -71,7 +71,7 @@ impl App {
                 });
             });
         // A click dismisses the message.
-        if shown.response.on_hover_text("Click: away").clicked() {
+        if shown.response.on_hover_text("Click to dismiss.").clicked() {
             self.message = None;
         }
         ctx.request_repaint_after(MESSAGE);

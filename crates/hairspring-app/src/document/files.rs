@@ -54,7 +54,9 @@ impl Document {
     pub fn save_over(&mut self, path: &Path) -> Result<(), AppError> {
         if Format::of(path) != Some(Format::Scene) {
             let path = path.display();
-            return Err(AppError::new(format!("{path}: a scene is written as .toml; name such a file")));
+            return Err(AppError::new(format!(
+                "{path}: a scene is written as .toml; choose a name that ends in .toml"
+            )));
         }
         let path = destination(path)?;
         let from = settled(&self.path);

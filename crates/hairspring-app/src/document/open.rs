@@ -75,7 +75,11 @@ impl Document {
                 let kinds = KINDS.map(|(kind, extensions)| {
                     format!("{} (.{})", kind.to_lowercase(), extensions.join(", ."))
                 });
-                Err(AppError::new(format!("{} is no {}; open such a file", path.display(), kinds.join(", "))))
+                Err(AppError::new(format!(
+                    "{} is not a {}; open such a file",
+                    path.display(),
+                    kinds.join(", ")
+                )))
             }
         }
     }

@@ -64,7 +64,7 @@ fn with_file(mut edited: DocumentMut, name: &str, file: &str) -> Result<String, 
         table.remove(field);
     }
     let file: Value =
-        file.parse().map_err(|why| AppError::new(format!("{file} is no name of a file: {why}")))?;
+        file.parse().map_err(|why| AppError::new(format!("{file} is not a file name: {why}")))?;
     Key::top("file").write(table, Some(file));
     Ok(edited.to_string().trim_start().to_owned())
 }

@@ -28,7 +28,7 @@ const REST: Duration = Duration::from_millis(300);
 struct Level {
     /// Picture size relative to the full size.
     scale: f32,
-    /// Approximate maximum number of hairs that are interpolated and lit, unless each would stand for more
+    /// Approximate maximum number of hairs that are interpolated and lit, unless each would represent more
     /// than [`THINNEST`].
     strands: usize,
     /// Voxels and texels of the shadows.
@@ -46,7 +46,7 @@ impl Level {
     }
 }
 
-/// Maximum number of hairs that one hair stands for. With more, a head of hair looks like tufts.
+/// Maximum number of hairs that one hair represents. With more, a head of hair looks like tufts.
 const THINNEST: usize = 16;
 
 /// No limit on the number of hairs.
@@ -72,7 +72,7 @@ const LEVELS: [Level; 10] = [
 /// Initial level, which is fast on a slow machine. A fast machine reaches a finer one within a second.
 const FIRST: usize = 5;
 
-/// Number of hairs that one hair is drawn as, if it stands for that many or more. A single hair eight times
+/// Number of hairs that one hair is drawn as, if it represents that many or more. A single hair eight times
 /// as wide looks like a ribbon; four hairs next to each other look like hair, and are drawn in a third of the
 /// time that interpolating and lighting four would take. More would be finer than the pixels at the levels
 /// that need them.

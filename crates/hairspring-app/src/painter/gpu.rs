@@ -97,7 +97,7 @@ impl GpuPainter {
     /// Describes the renderer, the CPU time of the last picture, and the number of pictures per second.
     pub fn note(&self) -> String {
         let name = self.state.adapter.get_info().name;
-        format!("GPU: {name}, {:.1} ms to hand over{}", 1e3 * self.took, self.pace.words())
+        format!("GPU: {name}, {:.1} ms to submit{}", 1e3 * self.took, self.pace.words())
     }
 }
 

@@ -68,12 +68,12 @@ impl For {
             Self::Open => "A file may also be dropped on the window.",
             Self::Save => "As TOML; the files that it names stay where they are.",
             Self::Record(Kind::Still) => "PNG or JPEG, by the name's end.",
-            Self::Record(Kind::Pictures) => "# stands for the digits of the frame's number.",
+            Self::Record(Kind::Pictures) => "`#` signs represent the digits of the frame's number.",
             Self::Record(Kind::Clip | Kind::Turntable) => "An .mp4 with H.264 video.",
             Self::Export => "All hairs as they are now, as .hair, .tfx or .data.",
             Self::Bake => {
                 "Simulates the scene from time 0, including unsaved changes, and writes one groom file per frame, like \
-                 `hairspring bake`. The # signs stand for the digits of the frame number; frame 1 is at time 0."
+                 `hairspring bake`. The # signs represent the digits of the frame number; frame 1 is at time 0."
             }
         }
     }

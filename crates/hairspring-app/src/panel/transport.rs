@@ -25,7 +25,7 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
         ui.separator();
         let mut speed = session.speed();
         let slider = egui::Slider::new(&mut speed, 0.05..=2.0).logarithmic(true).suffix(" ×").max_decimals(2);
-        if ui.add(slider.text("Speed")).on_hover_text("Seconds of the scene in a second: slow motion").changed() {
+        if ui.add(slider.text("Speed")).on_hover_text("Playback speed. Values below 1 play in slow motion.").changed() {
             actions.push(Action::Speed(speed));
         }
         ui.separator();
@@ -40,7 +40,7 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
             } else {
                 format!("step {:.1} ms", 1e3 * took)
             };
-            ui.weak(pace).on_hover_text("How long a step of 1/60 s takes. Where it takes longer, time runs slower; nothing is left out.");
+            ui.weak(pace).on_hover_text("Compute time of a step of 1/60 s. If it exceeds 1/60 s, playback slows down; no step is skipped.");
             ui.weak(super::timeline::cache_note(&snapshot.cached));
         }
     });

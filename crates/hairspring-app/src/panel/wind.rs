@@ -34,7 +34,7 @@ pub fn pad(ui: &mut Ui, wind: &mut [f32; 3], reach: f32) -> bool {
         arrow(painter, middle, tip);
     }
     response
-        .on_hover_text("Wind from above: drag the arrow; the head looks down the rose. The middle is calm.");
+        .on_hover_text("Top view. Drag the arrow to set the wind's direction and speed. The head faces down. The center is still air.");
     changed
 }
 

@@ -68,7 +68,7 @@ impl<'a> Arguments<'a> {
         Ok((from, to, self.number(frames, what, 1..=MOST)?))
     }
 
-    /// A number in a range. A fraction is no whole number.
+    /// A number in a range. A fraction is not a whole number.
     fn number<T>(self, word: &str, what: &str, range: RangeInclusive<T>) -> Result<T, String>
     where
         T: FromStr + PartialOrd + Display,
@@ -78,7 +78,7 @@ impl<'a> Arguments<'a> {
             let kind = if "0.5".parse::<T>().is_ok() { "number" } else { "whole number" };
             let (least, most) = (range.start(), range.end());
             let word_of_line = self.word;
-            format!("`{word_of_line}` needs {what}: '{word}' is no {kind} from {least} to {most}")
+            format!("`{word_of_line}` needs {what}: '{word}' is not a {kind} from {least} to {most}")
         })
     }
 
@@ -107,7 +107,8 @@ impl<'a> Arguments<'a> {
     pub(super) fn record(self, kind: Kind) -> Result<Line, String> {
         let (file, word) = self.last("a file and its seconds")?;
         let seconds = word.parse().ok().filter(|seconds: &f32| seconds.is_finite() && *seconds > 0.0);
-        let wrong = || format!("'{word}' is no length of a recording; expected seconds above 0, such as 2.5");
+        let wrong =
+            || format!("'{word}' is not the length of a recording; expected seconds above 0, such as 2.5");
         Ok(Line::Record(kind, file, seconds.ok_or_else(wrong)?))
     }
 

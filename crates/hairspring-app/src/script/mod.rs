@@ -87,7 +87,7 @@ impl Script {
     /// Parses the text of the script `name`.
     ///
     /// # Errors
-    /// Returns an error for the first line that is no command.
+    /// Returns an error for the first line that is not a command.
     pub fn parse(name: &str, text: &str) -> Result<Self, AppError> {
         let mut lines = VecDeque::new();
         for (number, line) in text.lines().enumerate() {

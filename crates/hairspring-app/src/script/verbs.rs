@@ -162,7 +162,7 @@ pub const VERBS: &[Verb] = &[
         |r| {
             let (name, on) = r.named_switch()?;
             let known = SWITCHES.iter().find(|known| **known == name);
-            Ok(Line::Switch(known.ok_or_else(|| format!("'{name}' is no overlay"))?, on))
+            Ok(Line::Switch(known.ok_or_else(|| format!("unknown overlay '{name}'"))?, on))
         },
     ),
     verb("compare", "on|off", "on", "opens or closes the second scene", |r| r.switch("compare")),
@@ -212,8 +212,8 @@ pub(super) fn read(line: &str) -> Result<Line, String> {
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     let text = rest.trim();
     let known = VERBS.iter().find(|verb| verb.name == word);
-    let verb =
-        known.ok_or_else(|| format!("'{word}' is no command of a script; docs/window.md lists them"))?;
+    let verb = known
+        .ok_or_else(|| format!("unknown command '{word}'; docs/window.md lists the commands of a script"))?;
     if verb.arguments.is_empty() && !text.is_empty() {
         return Err(format!("`{word}` takes no argument, but found '{text}'"));
     }

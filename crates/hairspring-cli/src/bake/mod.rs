@@ -52,7 +52,7 @@ pub struct Options {
     #[command(flatten)]
     input: Input,
 
-    /// Files to write: NAME.####.hair, .tfx or .data, where `#` signs stand for the digits of the frame number; or one
+    /// Files to write: NAME.####.hair, .tfx or .data, where `#` signs represent the digits of the frame number; or one
     /// file NAME.usdc, .usda, .abc or .pc2
     #[arg(short, long, value_name = "NAME.####.hair|NAME.usdc")]
     output: PathBuf,

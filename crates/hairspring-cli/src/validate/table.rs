@@ -138,13 +138,7 @@ fn cell(case: &Case, outcomes: &[Outcome], notes: &mut Vec<String>) -> String {
     if worst.pass() {
         return value;
     }
-    let why = match (worst.reason(), &worst.measured, &worst.reference) {
-        (Some(reason), ..) => reason.to_string(),
-        (None, Err(why), _) | (None, _, Err(why)) => why.to_string(),
-        (None, Ok(_), Ok(_)) => {
-            format!("{} is outside its tolerance at this number of points", worst.quantity)
-        }
-    };
+    let why = worst.reason().unwrap_or_default();
     format!("**{value}** {}", note(notes, format!("{}: {why}", case.name)))
 }
 

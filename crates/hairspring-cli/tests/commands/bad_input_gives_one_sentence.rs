@@ -24,6 +24,13 @@ fn refuse(folder: &Path, arguments: &[&str], code: i32, words: &[&str]) {
 }
 
 #[test]
+fn a_command_of_the_python_package_is_said_to_come_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let words = ["`hairspring wedge` comes with the Python package", "pip install"];
+    refuse(folder.path(), &["wedge", "shot.toml", "--set", "wind.gust=0;1"], 2, &words);
+}
+
+#[test]
 fn missing_and_unknown_files() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();

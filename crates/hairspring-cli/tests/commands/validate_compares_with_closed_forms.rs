@@ -44,6 +44,18 @@ fn a_disagreement_is_exit_code_1() {
 }
 
 #[test]
+fn too_few_points_are_a_reason_and_exit_code_1() {
+    for (case, needed) in [("michell", 6), ("catenary", 4), ("capstan", 8)] {
+        let output = run(Path::new("."), &["validate", case, "--points", "3"]);
+        let stdout = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{stdout}");
+        let reason = format!("the experiment needs {needed} points or more");
+        assert!(stdout.contains(&format!("FAIL: {reason}")), "{stdout}");
+        assert!(stdout.contains(&format!("\n{case}: {reason}\n")), "{stdout}");
+    }
+}
+
+#[test]
 fn a_table_has_a_value_or_a_reason_in_each_cell() {
     let found = succeed(Path::new("."), &["validate", "pendulum", "--table"]);
     let rows: Vec<&str> = found.lines().filter(|line| line.starts_with("| pendulum")).collect();

@@ -2,8 +2,11 @@
 
 use super::{
     accessor::{Buffers, components},
+    given,
     json::{Animation, Document, Interpolation, Path},
+    late::Late,
     morph::{self, ClipWeights, Morphs, Object},
+    sampling::{Place, Rates, Sampling},
     skeleton::Skeleton,
 };
 use crate::{Problem, bytes::with_room, motion::MAX_SAMPLES, text};
@@ -13,13 +16,6 @@ use std::{
     collections::{HashMap, HashSet},
     rc::Rc,
 };
-
-/// Lowest rate at which animations are resampled [Hz]: that of a display, and higher than hand-made or captured
-/// motion needs. It is raised until the last sample is at the last key.
-const RATE: f64 = 60.0;
-
-/// Difference of a duration from whole samples that is due to rounding [samples].
-const ROUNDING: f64 = 0.01;
 
 /// Smallest scale of a joint along each axis [1]. Animators scale an object to 0 to hide it.
 const SMALLEST_SCALE: f32 = 1e-4;
@@ -34,6 +30,8 @@ const SAMPLES_PER_BYTE: usize = 4;
 struct Keys {
     interpolation: Interpolation,
     times: Vec<f32>,
+    /// Those that have a sample at each of the times.
+    rates: Rates,
     /// Vectors of three or four components. For cubic splines there are three per key: in-tangent, value,
     /// out-tangent.
     values: Vec<Vec4>,
@@ -76,44 +74,46 @@ pub(super) fn clips(
 ) -> Result<(Vec<Clip>, Morphs), Problem> {
     let mut reader = Reader { document, buffers, read: HashMap::new() };
     let mut morphs = morph::Reader::new(document, buffers, objects);
-    let mut left_out = LeftOut::default();
+    let (mut left_out, mut late) = (LeftOut::default(), Late::default());
     let mut clips = Vec::new();
     let most = buffers.size().saturating_mul(SAMPLES_PER_BYTE).saturating_add(SAMPLES).min(MAX_SAMPLES);
     let mut samples_so_far = 0usize;
     for (index, animation) in document.animations.iter().enumerate() {
-        let name = animation.name.as_deref().map_or_else(|| format!("animation{index}"), text::name);
+        let name = given(&animation.name).map_or_else(|| format!("animation{index}"), text::name);
         let mut weights = ClipWeights::default();
         let tracks =
             reader.tracks((animation, &name), skeleton, (&mut morphs, &mut weights), &mut left_out)?;
         let of_weights = || weights.tracks.iter().map(|(_, keys)| morphs.times(*keys));
         let times = || tracks.iter().map(|t| &t.keys.times[..]).chain(of_weights());
-        let start = times().filter_map(|t| t.first()).copied().fold(f32::INFINITY, f32::min);
-        let end = times().filter_map(|t| t.last()).copied().fold(f32::NEG_INFINITY, f32::max);
-        if !(end - start).is_finite() {
+        let first = times().filter_map(|t| t.first()).copied().fold(f32::INFINITY, f32::min);
+        let last = times().filter_map(|t| t.last()).copied().fold(f32::NEG_INFINITY, f32::max);
+        if !(last - first).is_finite() {
             continue;
         }
-        let duration = f64::from(end) - f64::from(start);
-        let steps = (duration * RATE - ROUNDING).ceil().max(0.0);
-        let rate =
-            if (steps - duration * RATE).abs() > ROUNDING && steps > 0.0 { steps / duration } else { RATE };
-        let frames = (steps as usize).saturating_add(1);
+        let of_joints = tracks.iter().map(|track| track.keys.rates);
+        let of_weights = weights.tracks.iter().map(|(_, keys)| morphs.rates(*keys));
+        let rates = of_joints.chain(of_weights).fold(Rates::ALL, Rates::and);
         let joint_count = skeleton.joints.len();
+        let left = most.saturating_sub(samples_so_far).checked_div(joint_count).unwrap_or(usize::MAX);
+        let sampling = Sampling::new(first, last, rates, left);
+        let Sampling { start, rate, frames } = sampling;
         samples_so_far = frames.saturating_mul(joint_count).saturating_add(samples_so_far);
         if samples_so_far > most {
             let text = format!(
                 "animation {name:?} lasts {:.0} s and has {joint_count} joints, which is above the limit of {most} samples for a file of this size; shorten it, or export fewer animations",
-                end - start
+                last - start
             );
             return Err(Problem::limit(crate::Place::Whole, text));
         }
+        late.add(&name, first, &sampling);
         let mut samples = with_room(frames * joint_count)?;
         let mut hidden = Hidden::default();
         for frame in 0..frames {
-            let time = start + (frame as f64 / rate) as f32;
-            let first = samples.len();
+            let time = sampling.time(frame);
+            let offset = samples.len();
             samples.extend_from_slice(&skeleton.defaults);
             for track in &tracks {
-                track.apply(time, &mut samples[first + track.joint]);
+                track.apply(time, &mut samples[offset + track.joint]);
             }
             hidden.keep_scales(&mut samples, joint_count, time);
         }
@@ -124,6 +124,7 @@ pub(super) fn clips(
         morphs.push(ClipWeights { start, ..weights });
     }
     left_out.note(notes);
+    late.note(notes);
     Ok((clips, morphs.morphs))
 }
 
@@ -273,7 +274,7 @@ impl Reader<'_> {
         if is_rotation {
             left_out.zero_rotations += fill_zero_rotations(&mut values, interpolation);
         }
-        let keys = Rc::new(Keys { interpolation, times, values });
+        let keys = Rc::new(Keys { interpolation, rates: Rates::of(&times), times, values });
         self.read.insert(key, keys.clone());
         Ok(keys)
     }
@@ -339,7 +340,7 @@ impl Track {
     }
 
     fn at(&self, time: f32) -> Vec4 {
-        let Keys { interpolation, times, values } = &*self.keys;
+        let Keys { interpolation, times, values, .. } = &*self.keys;
         let place = Place::new(times, time);
         let (i, j, t) = (place.before, place.after, place.fraction);
         match interpolation {
@@ -357,41 +358,5 @@ impl Track {
                 parts.into_iter().zip(place.cubic()).map(|(value, factor)| value * factor).sum()
             }
         }
-    }
-}
-
-/// The place of a time between two keys.
-pub(super) struct Place {
-    /// Index of the key at or before the time.
-    pub before: usize,
-    /// Index of the next key.
-    pub after: usize,
-    /// Fraction of the way from one to the other, 0 to 1.
-    pub fraction: f32,
-    /// Time between them [s].
-    span: f32,
-}
-
-impl Place {
-    /// Finds `time` [s] between sorted times, of which there is at least one.
-    pub(super) fn new(times: &[f32], time: f32) -> Self {
-        let next = times.partition_point(|t| *t <= time);
-        let (before, after) = (next.saturating_sub(1), next.min(times.len() - 1));
-        let span = times[after] - times[before];
-        let fraction = if span > 0.0 { ((time - times[before]) / span).clamp(0.0, 1.0) } else { 0.0 };
-        Self { before, after, fraction, span }
-    }
-
-    /// Factors of a cubic spline for the value and the out-tangent of the key before, and the value and the in-tangent of
-    /// the key after (glTF 2.0 appendix C.5).
-    pub(super) fn cubic(&self) -> [f32; 4] {
-        let t = self.fraction;
-        let (t2, t3) = (t * t, t * t * t);
-        [
-            2.0 * t3 - 3.0 * t2 + 1.0,
-            self.span * (t3 - 2.0 * t2 + t),
-            3.0 * t2 - 2.0 * t3,
-            self.span * (t3 - t2),
-        ]
     }
 }

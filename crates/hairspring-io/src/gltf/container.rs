@@ -3,23 +3,13 @@
 use super::{
     accessor::Buffers,
     json::{self, Document},
+    uri,
 };
 use crate::{Place, Problem, bytes::Bytes};
-use base64::{
-    Engine,
-    alphabet::STANDARD,
-    engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig},
-};
 use std::{borrow::Cow, collections::HashMap};
 
 /// Largest size of all buffers together [bytes].
 const MAX_BUFFERS: u64 = 4 << 30;
-
-/// Some programs leave out the padding.
-const BASE64: GeneralPurpose = GeneralPurpose::new(
-    &STANDARD,
-    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
-);
 
 /// Opens a `.glb` or `.gltf` file and loads its buffers, each file once. `sibling` returns the bytes of a file
 /// next to it.
@@ -39,17 +29,17 @@ pub(super) fn open<'a>(
                 stored.push(Cow::Borrowed(bytes));
                 stored.len() - 1
             }),
-            Some(uri) => match uri.strip_prefix("data:") {
-                Some(encoded) => {
-                    stored.push(Cow::Owned(decoded(encoded)?));
+            Some(text) => match uri::data(text, index) {
+                Some(bytes) => {
+                    stored.push(Cow::Owned(bytes?));
                     Some(stored.len() - 1)
                 }
                 None => {
-                    let name = file_name(uri)?;
+                    let name = uri::file_name(text)?;
                     Some(match files.get(&name) {
                         Some(slot) => *slot,
                         None => {
-                            stored.push(Cow::Owned(beside(&name, uri, sibling)?));
+                            stored.push(Cow::Owned(beside(&name, text, sibling)?));
                             total = total.saturating_add(stored[stored.len() - 1].len() as u64);
                             files.insert(name, stored.len() - 1);
                             stored.len() - 1
@@ -106,41 +96,6 @@ fn chunks(data: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
     let after = 20 + json.len();
     let blob = if data.len() > after { Some(chunk(b"BIN\0")?) } else { None };
     Ok((json, blob))
-}
-
-/// Decodes the rest of a data URI.
-fn decoded(encoded: &str) -> Result<Vec<u8>, Problem> {
-    let encoded = encoded.split_once(";base64,").map(|(_, e)| e);
-    let decoded = encoded.and_then(|e| BASE64.decode(e).ok());
-    decoded.ok_or_else(|| Problem::whole("a buffer's data URI is not base64"))
-}
-
-/// Returns the name of the file that a relative URI refers to (RFC 3986): `%20` is a space, and `./` is the same
-/// folder.
-fn file_name(uri: &str) -> Result<String, Problem> {
-    if uri.contains("://") {
-        return Err(Problem::whole(format!(
-            "the buffer {uri:?} is on a network; put the file next to this one"
-        )));
-    }
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.as_bytes();
-    while let [first, after @ ..] = rest {
-        let code = match rest {
-            [b'%', a, b, ..] => hex(*a).zip(hex(*b)).map(|(a, b)| 16 * a + b),
-            _ => None,
-        };
-        bytes.push(code.unwrap_or(*first));
-        rest = if code.is_some() { &rest[3..] } else { after };
-    }
-    let name = String::from_utf8(bytes).unwrap_or_else(|_| uri.to_owned());
-    let parts: Vec<&str> = name.split('/').filter(|part| *part != "." && !part.is_empty()).collect();
-    // An absolute path stays one, which the caller refuses.
-    Ok(if name.starts_with('/') { name } else { parts.join("/") })
-}
-
-fn hex(digit: u8) -> Option<u8> {
-    (digit as char).to_digit(16).map(|d| d as u8)
 }
 
 /// Reads the file `name`, or the file with the literal name `uri`: some programs do not encode it.

@@ -2,8 +2,9 @@
 
 use super::{
     accessor::{Buffers, accessor, colors, components},
+    given,
     json::{Document, Node, Primitive},
-    skeleton::{local, walk},
+    nodes::{Walk, local, walk},
 };
 use crate::{
     Place, Problem,
@@ -37,7 +38,7 @@ fn is_lines(primitive: &Primitive) -> bool {
 /// Reads the lines of all nodes of the scene.
 pub(super) fn read(document: &Document, buffers: &Buffers<'_>) -> Result<Read, Problem> {
     let mut notes = Vec::new();
-    let (order, parents, _) = walk(document, &mut notes)?;
+    let Walk { order, parents, drawn, hidden, .. } = walk(document, &mut notes)?;
     let mut build = Build {
         document,
         buffers,
@@ -48,14 +49,16 @@ pub(super) fn read(document: &Document, buffers: &Buffers<'_>) -> Result<Read, P
         vectors: HashMap::new(),
         numbers: HashMap::new(),
         uvs: HashMap::new(),
-        found: Found::default(),
+        found: Found { hidden, ..Found::default() },
     };
     let mut world = vec![Affine3A::IDENTITY; document.nodes.len()];
     for n in order {
         let node = &document.nodes[n];
         let parent = parents[n].map_or(Affine3A::IDENTITY, |p| world[p]);
         world[n] = parent * local(node, n)?.to_affine();
-        build.node(node, n, world[n])?;
+        if drawn[n] {
+            build.node(node, n, world[n])?;
+        }
     }
     build.finish(notes)
 }
@@ -77,6 +80,10 @@ struct Found {
     deformed: usize,
     /// Nodes that draw copies of their mesh.
     copies: usize,
+    /// Nodes with meshes that are hidden.
+    hidden: usize,
+    /// Primitives of segments with an odd number of ends.
+    incomplete: usize,
 }
 
 /// The groom under construction.
@@ -117,7 +124,7 @@ impl Build<'_> {
         }
         let strands = self.groom.strand_count();
         if strands > before {
-            let name = node.name.as_deref().or(mesh.name.as_deref());
+            let name = given(&node.name).or(given(&mesh.name));
             let name = name.map_or_else(|| format!("node{index}"), text::name);
             let next = self.groups.len();
             let group = *self.groups.entry(name).or_insert_with_key(|name| {
@@ -203,6 +210,7 @@ impl Build<'_> {
             let offsets = if indices.is_empty() { vec![0] } else { vec![0, indices.len() as u32] };
             return Ok(Chains { order: indices, offsets });
         }
+        self.found.incomplete += usize::from(!indices.len().is_multiple_of(2));
         // Some programs give each segment vertices of its own.
         for k in (2..indices.len()).step_by(2) {
             let [a, b] = [indices[k - 1], indices[k]];
@@ -259,9 +267,10 @@ impl Build<'_> {
     fn finish(self, mut notes: Vec<String>) -> Result<Read, Problem> {
         let Self { mut groom, radii, found, groups, .. } = self;
         if found.lines == 0 {
-            let has = match found.others {
-                0 => "has no lines".into(),
-                others => format!("has {others} primitives of triangles or points but no lines"),
+            let has = match (found.others, found.hidden) {
+                (0, 0) => "has no lines".into(),
+                (0, hidden) => format!("has no lines except in {hidden} hidden objects"),
+                (others, _) => format!("has {others} primitives of triangles or points but no lines"),
             };
             return Err(Problem::whole(format!(
                 "the file {has}: a groom is read from primitives of the mode LINES or LINE_STRIP; export the hair as curves or loose edges, or name the file as a body"
@@ -275,6 +284,10 @@ impl Build<'_> {
         note(
             found.others,
             "primitives of triangles or points are left out, because a groom is read from lines",
+        );
+        note(
+            found.incomplete,
+            "primitives of lines end with half a segment, which is left out; export the file again",
         );
         note(found.loops, "closed lines (LINE_LOOP) are opened at their first point, which is the root");
         note(

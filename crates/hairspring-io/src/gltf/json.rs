@@ -68,12 +68,24 @@ pub(super) struct Node {
 struct NodeExtensions {
     #[serde(rename = "EXT_mesh_gpu_instancing")]
     instancing: Option<IgnoredAny>,
+    #[serde(rename = "KHR_node_visibility")]
+    visibility: Option<Visibility>,
+}
+
+#[derive(Deserialize)]
+struct Visibility {
+    visible: Option<bool>,
 }
 
 impl Node {
     /// Whether the node draws copies of its mesh.
     pub(super) fn has_instances(&self) -> bool {
         self.extensions.instancing.is_some()
+    }
+
+    /// Whether the node is drawn, with what is below it.
+    pub(super) fn is_visible(&self) -> bool {
+        self.extensions.visibility.as_ref().and_then(|v| v.visible).unwrap_or(true)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{
     accessor::{Buffers, accessor, colors, components},
+    given,
     json::{self, Attributes, Document, Path, Primitive, Target, compressed},
     mesh_notes::LeftOut,
     morph,
@@ -52,7 +53,7 @@ pub(super) fn read(
     };
     let mut objects = Vec::new();
     for (index, node) in document.nodes.iter().enumerate() {
-        let Some(mesh) = node.mesh.filter(|_| skeleton.reached(index)) else { continue };
+        let Some(mesh) = node.mesh.filter(|_| skeleton.draws(index)) else { continue };
         let missing =
             || Problem::whole(format!("node {index} names mesh {mesh}, which the file does not have"));
         let named = document.meshes.get(mesh).ok_or_else(missing)?;
@@ -138,7 +139,7 @@ impl<'a> Build<'a> {
                     let text = format!("node {} names skin {skin}, which the file does not have", node.index);
                     Problem::whole(text)
                 };
-                let place = self.skeleton.skins.get(skin).ok_or_else(missing)?;
+                let place = self.skeleton.skins.get(skin).and_then(Option::as_ref).ok_or_else(missing)?;
                 primitive.attributes.has_joints().then_some(place)
             }
             None => None,
@@ -412,9 +413,8 @@ impl<'a> Build<'a> {
         };
         let surface = &material.pbr_metallic_roughness;
         let [r, g, b, _] = surface.base_color_factor;
-        let mesh_name = node.mesh.name.as_deref();
-        let mesh_name = mesh_name.map_or_else(|| format!("mesh{}", node.mesh_index), text::name);
-        let name = match &material.name {
+        let mesh_name = given(&node.mesh.name).map_or_else(|| format!("mesh{}", node.mesh_index), text::name);
+        let name = match given(&material.name) {
             Some(material) => format!("{mesh_name}.{}", text::name(material)),
             None => mesh_name,
         };

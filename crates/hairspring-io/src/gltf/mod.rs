@@ -3,17 +3,21 @@
 //!
 //! Every mesh follows its joints: skinned meshes by their weights, others rigidly with the node that holds
 //! them. Morph targets are applied with their default weights, and animations move them. Animations are resampled
-//! at 60 Hz. Textures, cameras and lights are not read. Where a groom is read, lines are its strands.
+//! at a fixed rate, with a sample at every key if the keys are at a usual rate. Textures, cameras and lights are not read. Where a groom is read, lines are its strands.
 
 mod accessor;
 mod animation;
 mod container;
 mod curves;
 mod json;
+mod late;
 mod mesh;
 mod mesh_notes;
 mod morph;
+mod nodes;
+mod sampling;
 mod skeleton;
+mod uri;
 
 use crate::{Problem, strands::Read};
 use glam::Affine3A;
@@ -85,4 +89,9 @@ fn invertible(m: Affine3A) -> Option<Affine3A> {
     let determinant = m.matrix3.determinant();
     (m.is_finite() && determinant.is_finite() && determinant.abs() > 1e-20 && m.inverse().is_finite())
         .then_some(m)
+}
+
+/// Returns a name that is not blank.
+fn given(name: &Option<String>) -> Option<&str> {
+    name.as_deref().filter(|name| !name.trim().is_empty())
 }

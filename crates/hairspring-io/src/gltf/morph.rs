@@ -3,9 +3,10 @@
 use super::{
     Character,
     accessor::{Buffers, components},
-    animation::{Place, check_count, not_in_order},
+    animation::{check_count, not_in_order},
     json::{Animation, Document, Interpolation, Primitive},
     mesh::vectors,
+    sampling::{Place, Rates},
 };
 use crate::{Problem, motion::MAX_POSITIONS};
 use glam::{Quat, Vec3};
@@ -47,6 +48,8 @@ pub(super) struct Target {
 struct Keys {
     interpolation: Interpolation,
     times: Vec<f32>,
+    /// Those that have a sample at each of the times.
+    rates: Rates,
     /// Shape `[keys][targets]`. For cubic splines `[keys][3][targets]`: in-tangent, value, out-tangent.
     values: Vec<f32>,
     targets: usize,
@@ -136,7 +139,8 @@ impl<'a> Reader<'a> {
         if !times.iter().chain(&values).all(|x| x.is_finite()) || !times.is_sorted() {
             return Err(not_in_order(name));
         }
-        self.morphs.keys.push(Keys { interpolation, times, values, targets });
+        let rates = Rates::of(&times);
+        self.morphs.keys.push(Keys { interpolation, times, rates, values, targets });
         self.read.insert(key, self.morphs.keys.len() - 1);
         Ok(Some((object, self.morphs.keys.len() - 1)))
     }
@@ -144,6 +148,11 @@ impl<'a> Reader<'a> {
     /// Times of the keys with this index [s].
     pub(super) fn times(&self, keys: usize) -> &[f32] {
         &self.morphs.keys[keys].times
+    }
+
+    /// The rates that have a sample at each of the keys with this index.
+    pub(super) fn rates(&self, keys: usize) -> Rates {
+        self.morphs.keys[keys].rates
     }
 
     /// Adds the weights of the next clip.

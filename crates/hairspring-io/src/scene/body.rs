@@ -3,9 +3,15 @@
 use super::{
     Reader,
     file::{BodyFile, FileName},
+    groom_file::Placement,
     sentence::unknown,
 };
-use crate::{Character, ReadOptions, Result, load, makehuman, obj, read_body, units};
+use crate::{
+    Character, ReadOptions, Result, load,
+    load::read_mesh,
+    makehuman, obj,
+    units::{self, WholeBody},
+};
 use glam::{Affine3A, Mat3A, Vec3};
 use hairspring::body::{Body, Joint, Mesh, Part, Skin};
 
@@ -38,14 +44,18 @@ impl Reader<'_> {
     }
 
     /// Reads one file of a body.
-    fn piece(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
+    pub(super) fn piece(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
         let path = self.resolve(&named.file);
         let options = ReadOptions { scale: named.scale, up: named.up };
+        let transform = named.transform.map_or(Affine3A::IDENTITY, Placement::to_affine);
+        let mut scale = named.scale.unwrap_or(makehuman::SCALE);
         let mut character = match (&named.rig, &named.weights) {
             (Some(rig), Some(weights)) => self.rigged(named, rig, weights, &options)?,
             (None, None) => {
-                let loaded = self.named(read_body(&path, &options), &named.file, what)?;
+                let whole = self.whole.map(|whole| (whole, transform));
+                let loaded = self.named(read_mesh(&path, &options, whole), &named.file, what)?;
                 self.note(&path, loaded.notes);
+                scale = loaded.scale;
                 loaded.value
             }
             _ => {
@@ -54,12 +64,15 @@ impl Reader<'_> {
             }
         };
         let body = &mut character.body;
-        if let Some(transform) = &named.transform {
+        if named.transform.is_some() {
             if body.skin.is_some() || body.joints.len() > 1 {
                 let text = "`transform` is for a mesh without joints, and this file has joints; move it in the program that made it";
                 return Err(self.wrong(named.file.span().start, "transform", text.into()));
             }
-            place(body, transform.to_affine());
+            place(body, transform);
+        }
+        if what == "body" && self.whole.is_none() {
+            self.whole = units::bounds_of(&body.mesh.positions).map(|bounds| WholeBody { scale, bounds });
         }
         if let Some(parts) = &named.parts {
             if parts.is_empty() {

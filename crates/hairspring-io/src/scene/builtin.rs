@@ -40,7 +40,7 @@ pub(super) fn settings(text: &str, scene: &SceneFile, file: &BuiltinFile) -> Res
     }
     if let Some(look) = &file.look {
         let start = look.span().start;
-        hair.look = over(text, start, &hair.look, look.get_ref().clone())?;
+        hair.look = over(text, start, "builtin.look", &hair.look, look.get_ref().clone())?;
         check::in_range(text, line_at(text, start), &hair.look)?;
     }
     hair.effects = file.effects;

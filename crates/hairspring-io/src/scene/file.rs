@@ -32,7 +32,7 @@ define_settings! {
         /// Direction and magnitude of gravity. With a sag-free start, hair is in static balance under any gravity:
         /// it keeps its shape and only swings differently. To see it give way, turn `solver.sag_free` off.
         #[serde(default = "earth")]
-        gravity: Vec3 = earth(), ["m/s²"], {vector};
+        gravity: Vec3 = earth(), ["m/s²"], {vector -10000 to 10000};
         /// The mesh that is drawn and that hair grows on.
         body: Option<BodyFile>, "none", {table};
         /// A closed mesh that hair collides with instead of the body's own.

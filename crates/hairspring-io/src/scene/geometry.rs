@@ -81,7 +81,11 @@ impl Reader<'_> {
             None => Scene::default(),
         };
         let character = match (&file.body, made.body.take()) {
-            (Some(named), _) => Some(self.body(named, "body")?),
+            (Some(named), _) => {
+                // Its unit may be known already, for hulls.
+                self.whole = None;
+                Some(self.body(named, "body")?)
+            }
             (None, body) => body.map(|body| Character {
                 body,
                 clips: made.clip.take().into_iter().collect(),
@@ -97,10 +101,11 @@ impl Reader<'_> {
         // Hair grows on the body's own joints and on props. A rigid motion later replaces the joints by a
         // single one.
         let whole = character.as_ref().map(|c| with_props(c.body.clone(), &props));
+        self.note_namesakes(file, scene, whole.as_ref().map_or(&[], |body| &body.joints));
         for (groom, named) in scene.grooms[grown..].iter_mut().zip(&file.groom) {
             groom.groom = self.groom(named, &groom.materials, whole.as_ref())?;
         }
-        let (body, clip, cache) = self.motion(file.clip.as_ref(), character, file.builtin.is_some())?;
+        let (body, clip, cache) = self.motion(file, character)?;
         // The built-in collision mesh has the joints of the built-in body, unless the body is now one piece.
         let one_piece = body.as_ref().is_some_and(|b| b.joints.len() == 1);
         let made = made.collision.map(|c| if one_piece { body::rigid(c) } else { c });
@@ -112,7 +117,9 @@ impl Reader<'_> {
         self.prop_joints(body.as_ref(), &props)?;
         let whole = body.clone().map(|body| with_props(body, &props));
         let clip = match (&body, &whole) {
-            (Some(body), Some(whole)) => beside_props(clip, (body, whole), &props),
+            (Some(body), Some(whole)) => {
+                beside_props(clip, (body, whole), &props, file.solver.teleport_distance)
+            }
             _ => clip,
         };
         let body = whole;

@@ -120,8 +120,14 @@ impl Reader<'_> {
         if named.reverse == Reverse::All {
             loaded.value.reverse();
         }
-        if !loaded.value.colors.is_empty() {
-            match named.colors {
+        if loaded.value.colors.is_empty() {
+            if named.colors == Some(ColorSource::File) {
+                loaded.notes.push(
+                    "the file has no colors, so `colors = \"file\"` has no effect; the color is that of [groom.look]".into(),
+                );
+            }
+        } else {
+            match named.colors.unwrap_or(ColorSource::File) {
                 ColorSource::Look => loaded.value.colors.clear(),
                 ColorSource::File if sets_color(&named.look) => loaded.notes.push(
                     "the file has a color for each point, which replaces the color of [groom.look]; set `colors = \"look\"` to use that of the look".into(),

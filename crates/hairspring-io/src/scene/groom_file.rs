@@ -33,8 +33,7 @@ define_settings! {
         #[serde(default, deserialize_with = "reverse")]
         reverse: Reverse = false, "none", {text "`true`, `false`, `\"nearest\"`"};
         /// Source of the color of a file that has a color per point: the file, or `look`.
-        #[serde(default)]
-        colors: ColorSource = "file", "none", {words &["file", "look"]};
+        colors: Option<ColorSource>, "none", {words &["file", "look"]}, default "`\"file\"`";
         /// Placement of the groom, applied after `scale` and `up`.
         #[serde(default)]
         transform: Placement, "none", {table};
@@ -75,10 +74,9 @@ pub(super) enum Reverse {
 }
 
 /// Where the color of hair comes from if the groom's file has a color per point.
-#[derive(Clone, Copy, Default, PartialEq, Deserialize)]
+#[derive(Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum ColorSource {
-    #[default]
     File,
     Look,
 }
@@ -91,7 +89,7 @@ pub(super) struct GroomGeometry<'a> {
     thicken: Thicken,
     units: (Option<f32>, Option<Axis>),
     reverse: Reverse,
-    colors: ColorSource,
+    colors: Option<ColorSource>,
     transform: Placement,
     guides: Guides,
     maps: &'a MapsFile,

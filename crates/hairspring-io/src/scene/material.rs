@@ -49,6 +49,11 @@ pub(super) fn named(
         .collect()
 }
 
+/// Checks every material, also those that no groom uses.
+pub(super) fn check_all(text: &str, scene: &SceneFile) -> Result<(), Problem> {
+    scene.material.values().try_for_each(|table| overlaid(text, table).map(|_| ()))
+}
+
 /// Notes about materials that no groom uses.
 pub(super) fn unused(scene: &SceneFile) -> Option<String> {
     let named = scene.groom.iter().filter_map(|groom| groom.material.as_ref());
@@ -90,28 +95,30 @@ fn overlaid(text: &str, table: &Spanned<toml::Table>) -> Result<Material, Proble
             Problem::line(line, format!("the preset {}", unknown(&name, material::PRESETS)))
         })?,
     };
-    let material: Material = over(text, start, &base, fields)?;
+    let material: Material = over(text, start, "material.NAME", &base, fields)?;
     check::in_range(text, line_at(text, start), &material)?;
     Ok(material)
 }
 
-/// Returns `base`, overridden by the given fields of the table that begins at byte `start`.
+/// Returns `base`, overridden by the given fields of a `table` of the scene file, which begins at byte `start`.
 pub(super) fn over<T: Serialize + DeserializeOwned>(
     text: &str,
     start: usize,
+    table: &str,
     base: &T,
     fields: toml::Table,
 ) -> Result<T, Problem> {
     let mut all = toml::Table::try_from(base).map_err(|e| Problem::whole(e.to_string()))?;
     all.extend(fields.clone());
-    all.clone()
-        .try_into()
-        .map_err(|e: toml::de::Error| problem_in_table(text, start, &e, wrong_field::<T>(&all, &fields)))
+    all.clone().try_into().map_err(|e: toml::de::Error| {
+        let path = wrong_field::<T>(&all, &fields).map(|field| format!("{table}.{field}"));
+        problem_in_table(text, start, &e, path.as_deref())
+    })
 }
 
 /// Returns the field without which the table `all` would be valid, of those given. A field of a table inside
-/// it is preferred.
-fn wrong_field<'a, T: DeserializeOwned>(all: &toml::Table, fields: &'a toml::Table) -> Option<&'a str> {
+/// it, such as `global_shape.pull`, is preferred.
+fn wrong_field<T: DeserializeOwned>(all: &toml::Table, fields: &toml::Table) -> Option<String> {
     let valid = |table: toml::Table| table.try_into::<T>().is_ok();
     let without = |key: &str| {
         let mut rest = all.clone();
@@ -124,6 +131,6 @@ fn wrong_field<'a, T: DeserializeOwned>(all: &toml::Table, fields: &'a toml::Tab
             rest.get_mut(key).and_then(toml::Value::as_table_mut).map(|table| table.remove(*inner));
             valid(rest)
         });
-        inner.unwrap_or(key).as_str()
+        inner.map_or(key.clone(), |inner| format!("{key}.{inner}"))
     })
 }

@@ -5,6 +5,7 @@ mod air;
 mod body;
 mod builtin;
 mod check;
+mod expected;
 mod file;
 mod geometry;
 mod groom;
@@ -15,14 +16,19 @@ mod map_file;
 mod maps;
 mod material;
 mod motion;
+mod namesakes;
 pub mod parameters;
 mod props;
 mod sentence;
 mod settings;
 mod vertex_cache;
 
-use crate::{Error, Format, Loaded, Problem, ReadOptions, Result, load, read_body, text::as_text};
+use crate::{
+    Error, Format, Loaded, Problem, ReadOptions, Result, load, load::read_mesh, text::as_text,
+    units::WholeBody,
+};
 use file::{FileName, SceneFile};
+use glam::Affine3A;
 use hairspring::groom::Repairs;
 use hairspring_scene::{Scene, Shape};
 use sentence::{line_at, line_of_key, problem};
@@ -69,7 +75,7 @@ pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
 /// Reads only the settings of such a text, for `Stage::update_settings`. This is fast. The scene is that of
 /// [`read_scene_text`] without its geometry: grooms have their materials, guides, effects and look, but no
 /// strands, and there is no body, collision mesh, sheet or clip. The only files that are opened are those of
-/// convex hulls of colliders.
+/// convex hulls of colliders, and that of the body if a hull's file has no unit.
 ///
 /// # Errors
 /// See [`read_scene`], except for errors about other files and the body's joints.
@@ -109,6 +115,7 @@ fn parse(text: &str) -> std::result::Result<SceneFile, Problem> {
     for groom in &file.groom {
         material::of_groom(text, &file, groom)?;
     }
+    material::check_all(text, &file)?;
     Ok(file)
 }
 
@@ -118,11 +125,13 @@ struct Reader<'a> {
     text: &'a str,
     notes: Vec<String>,
     repairs: Repairs,
+    /// The body, once its first file is read.
+    whole: Option<WholeBody>,
 }
 
 impl<'a> Reader<'a> {
     fn new(path: &'a Path, text: &'a str) -> Self {
-        Self { path, text, notes: Vec::new(), repairs: Repairs::default() }
+        Self { path, text, notes: Vec::new(), repairs: Repairs::default(), whole: None }
     }
 
     /// Returns the path of a file that the scene names.
@@ -150,7 +159,12 @@ impl<'a> Reader<'a> {
 
     fn note(&mut self, file: &Path, notes: Vec<String>) {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
-        self.notes.extend(notes.into_iter().map(|n| format!("{name}: {n}")));
+        for note in notes.into_iter().map(|note| format!("{name}: {note}")) {
+            // A scene may name a file more than once.
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
     }
 
     /// Creates an error about the value of the first `key` after `near`.
@@ -164,7 +178,9 @@ impl<'a> Reader<'a> {
         let Shape::Hull { file: Some(file), scale, .. } = named else { return Ok(named.clone()) };
         let file = toml::Spanned::new(near..near, file.clone());
         let path = self.resolve(&file);
-        let loaded = self.named(read_body(&path, &ReadOptions { scale: *scale, up: None }), &file, "hull")?;
+        let options = ReadOptions { scale: *scale, up: None };
+        let whole = self.whole.map(|whole| (whole, Affine3A::IDENTITY));
+        let loaded = self.named(read_mesh(&path, &options, whole), &file, "hull")?;
         let vertices = loaded.value.body.mesh.positions;
         let (count, points) = (vertices.len(), hull_points::outermost(vertices));
         let mut notes = loaded.notes;

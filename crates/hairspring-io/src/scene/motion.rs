@@ -3,14 +3,18 @@
 use super::{
     Reader,
     body::rigid,
-    file::{ClipFile, KeyFile, TravelName},
+    file::{ClipFile, KeyFile, SceneFile, TravelName},
+    namesakes::namesakes,
     sentence::unknown,
 };
 use crate::{
     Character, Format, ReadOptions, Result,
-    load::{pick_clip, read_motion_at},
+    clip_choice::{first_note, pick_clip, unplayed_note},
+    load::read_motion_at,
 };
-use hairspring::body::{Body, Clip, HeadMotion, Key, Travel, head_motion, keyframe_clip, retarget};
+use hairspring::body::{
+    Body, Clip, HeadMotion, KEYED_RATE, Key, Travel, head_motion, keyframe_clip, retarget,
+};
 use hairspring_scene::VertexCache;
 
 impl Reader<'_> {
@@ -18,16 +22,20 @@ impl Reader<'_> {
     #[allow(clippy::type_complexity)]
     pub(super) fn motion(
         &mut self,
-        named: Option<&ClipFile>,
+        file: &SceneFile,
         character: Option<Character>,
-        builtin: bool,
     ) -> Result<(Option<Body>, Option<Clip>, Option<VertexCache>)> {
-        let Some(named) = named else {
+        let Some(named) = &file.clip else {
             // A body file's motions are used only if a [clip] selects one. The built-in body uses its own
             // motion.
             return Ok(match character {
-                Some(c) if builtin => (Some(c.body), c.clips.into_iter().next(), None),
-                Some(c) => (Some(c.body), None, c.vertex_cache),
+                Some(c) if file.builtin.is_some() => (Some(c.body), c.clips.into_iter().next(), None),
+                Some(c) => {
+                    if let Some(body) = file.body.as_ref().filter(|_| c.vertex_cache.is_none()) {
+                        self.note(&self.resolve(&body.file), unplayed_note(&c.clips).into_iter().collect());
+                    }
+                    (Some(c.body), None, c.vertex_cache)
+                }
                 None => (None, None, None),
             });
         };
@@ -40,9 +48,14 @@ impl Reader<'_> {
         if !named.keys.is_empty() {
             let pivot = named.pivot.unwrap_or_default();
             let keys: Vec<Key> = named.keys.iter().map(KeyFile::key).collect();
-            return Ok((Some(rigid(character.body)), Some(keyframe_clip(&keys, pivot)), None));
+            let clip = keyframe_clip(&keys, pivot, KEYED_RATE, file.solver.teleport_distance);
+            return Ok((Some(rigid(character.body)), Some(clip), None));
         }
         let Some(file) = &named.file else {
+            if let Some(body) = &file.body {
+                let note = first_note(&character.clips, named.name.as_deref());
+                self.note(&self.resolve(&body.file), note.into_iter().collect());
+            }
             return self.own_motion(character, named, near);
         };
         let path = self.resolve(file);
@@ -68,6 +81,13 @@ impl Reader<'_> {
                     carried.scale
                 ));
             }
+            if let Some(height) = carried.first_frame_height {
+                let side = if height > 0.0 { "higher" } else { "lower" };
+                notes.push(format!(
+                    "its first frame is {:.2} m {side} than most others, so the body is placed by the height of those; set `start` to leave it out",
+                    height.abs()
+                ));
+            }
             self.note(&path, notes);
             return Ok((Some(character.body), Some(self.cut(carried.clip, named, near)?), None));
         };
@@ -90,6 +110,7 @@ impl Reader<'_> {
             let text = format!("the joint {}", unknown(joint, joints.iter().map(|j| j.name.as_str())));
             self.wrong(near, "joint", text)
         })?;
+        self.notes.extend(namesakes(&joints, joint, "motion"));
         Ok((Some(rigid(character.body)), Some(self.cut(driven, named, near)?), None))
     }
 
@@ -102,6 +123,10 @@ impl Reader<'_> {
         named: &ClipFile,
         near: usize,
     ) -> Result<(Option<Body>, Option<Clip>, Option<VertexCache>)> {
+        if character.clips.is_empty() {
+            let text = "[clip] names no `file`, and the body's own file holds no motion; name the file of a motion, or remove [clip]";
+            return Err(self.wrong(near, "name", text.into()));
+        }
         let wrong = |text: String| self.wrong(near, "name", format!("in the body's file {text}"));
         let clip = pick_clip(&character.clips, named.name.as_deref()).map_err(wrong)?;
         let cache = character.morphed(clip).map_err(wrong)?;

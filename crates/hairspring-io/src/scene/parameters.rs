@@ -99,6 +99,77 @@ pub fn contents(table: &str) -> Option<&'static str> {
     })
 }
 
+/// The fields of a table, and the name of the kind of table that has them, which is empty for a plain table.
+pub(super) type Variant = (&'static str, Vec<&'static Parameter>);
+
+/// Returns the fields of the table, or of the tables of the list, at this place of a scene file, such as `clip.keys`; none if
+/// another value belongs there.
+pub(super) fn fields(path: &str) -> Vec<Variant> {
+    documented_fields(&documented(path))
+}
+
+/// Returns the definition of the field at this place of a scene file.
+pub(super) fn definition(path: &str) -> Option<&'static Parameter> {
+    documented_definition(&documented(path))
+}
+
+/// [`fields`] for the name under which the tables list a place.
+fn documented_fields(path: &str) -> Vec<Variant> {
+    let plain: Vec<&Parameter> =
+        TABLES.iter().filter(|(table, _)| *table == path).flat_map(|(_, fields)| *fields).collect();
+    if !plain.is_empty() {
+        return vec![("", plain)];
+    }
+    let variants =
+        |fields: Fields| fields.iter().map(|(variant, fields)| (*variant, fields.iter().collect::<Vec<_>>()));
+    if let Some((_, fields)) = LISTS.iter().find(|(list, _)| *list == path) {
+        return variants(*fields).collect();
+    }
+    if let Some(field) = documented_definition(path) {
+        return variants(field.fields).collect();
+    }
+    let Some((parent, name)) = path.rsplit_once('.') else { return Vec::new() };
+    let of_kind = documented_fields(parent).into_iter().find(|(variant, _)| *variant == name);
+    of_kind.map(|(_, fields)| ("", fields)).into_iter().collect()
+}
+
+/// [`definition`] for the name under which the tables list a place.
+fn documented_definition(path: &str) -> Option<&'static Parameter> {
+    let (parent, name) = path.rsplit_once('.').unwrap_or(("", path));
+    let plain = documented_fields(parent).into_iter().filter(|(variant, _)| variant.is_empty());
+    let named = plain.flat_map(|(_, fields)| fields).filter(|field| field.name == name);
+    // The table around the hair that is grown repeats the names of its fields without a definition.
+    named.max_by_key(|field| field.range != Range::Table)
+}
+
+/// Whether this place of a scene file holds a list of tables.
+pub(super) fn is_list(path: &str) -> bool {
+    let mut of_file = ["groom", "prop", "sheet"].into_iter().chain(LISTS.map(|(list, _)| list));
+    let is_empty_list = |default: fn() -> String| default() == "[]";
+    of_file.any(|list| list == path)
+        || path.ends_with(".more")
+        || definition(path).and_then(|field| field.default).is_some_and(is_empty_list)
+}
+
+/// The name under which the tables list this place: without the name of a material, and with the fields that several tables
+/// share under the one that documents them.
+fn documented(path: &str) -> String {
+    let mut parts: Vec<&str> = path.split('.').collect();
+    match parts[..] {
+        ["material", _, ..] => _ = parts.remove(1),
+        ["prop", "keys", ..] => parts[0] = "clip",
+        ["prop", "mesh", ..] | ["body" | "collision" | "sheet", "more", ..] => {
+            _ = parts.splice(..2, ["body"])
+        }
+        ["builtin", "look" | "effects", ..] | ["body" | "collision" | "sheet", "transform", ..] => {
+            parts[0] = "groom"
+        }
+        ["groom", "grow", "inside", ..] => _ = parts.splice(..3, ["collider", "shape"]),
+        _ => {}
+    }
+    parts.join(".")
+}
+
 /// Adds the parameters of a table, and those of the tables in it.
 fn add(table: &str, parameters: &'static [Parameter], all: &mut BTreeMap<String, &'static Parameter>) {
     let within = |table: &str, name: &str| match (table, name) {

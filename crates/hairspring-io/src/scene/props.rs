@@ -10,9 +10,9 @@ use super::{
     sentence::unknown,
 };
 use crate::{Problem, Result};
-use glam::Affine3A;
+use glam::{Affine3A, Vec3};
 use hairspring::{
-    body::{Body, Clip, Joint, Trs, combine_clips, keyframe_clip},
+    body::{Body, Clip, Joint, KEYED_RATE, Key, Trs, combine_clips, keyframe_clip},
     settings::check,
 };
 
@@ -23,8 +23,9 @@ const HEADER: &str = "[[prop]]";
 pub(super) struct Prop {
     name: String,
     mesh: Option<Body>,
-    /// Its motion from rest, in the space of the body at rest.
-    clip: Clip,
+    /// The keys of its motion from rest, in the space of the body at rest, and the point that it turns about.
+    keys: Vec<Key>,
+    pivot: Vec3,
     /// The joint that carries it.
     joint: Option<String>,
 }
@@ -67,9 +68,9 @@ impl Reader<'_> {
                 return Err(self.wrong(near, "name", text));
             }
             let mesh = prop.mesh.as_ref().map(|mesh| self.body(mesh, "prop")).transpose()?.map(|c| c.body);
-            let keys: Vec<_> = prop.keys.iter().map(KeyFile::key).collect();
+            let keys = prop.keys.iter().map(KeyFile::key).collect();
             let (name, joint) = (prop.name.clone(), prop.joint.clone());
-            props.push(Prop { name, mesh, clip: keyframe_clip(&keys, prop.pivot), joint });
+            props.push(Prop { name, mesh, keys, pivot: prop.pivot, joint });
         }
         Ok(props)
     }
@@ -122,19 +123,23 @@ pub(super) fn with_props(mut body: Body, props: &[Prop]) -> Body {
 }
 
 /// Returns the motion of the joints of `body` without `props`, combined with the motions of `props`. `whole` is the
-/// body with the props.
+/// body with the props. `teleport_distance` [m] decides which keys are cuts.
 pub(super) fn beside_props(
     clip: Option<Clip>,
     (body, whole): (&Body, &Body),
     props: &[Prop],
+    teleport_distance: f32,
 ) -> Option<Clip> {
     if props.is_empty() {
         return clip;
     }
+    // At the rate of the body's motion, so that a cut is not interpolated between frames.
+    let rate = clip.as_ref().map_or(KEYED_RATE, |clip| clip.rate);
     let motion = |prop: &Prop| {
         let (_, relative) = carrier(whole, prop);
-        let samples = prop.clip.samples.iter().map(|sample| trs(relative * sample.to_affine()));
-        Clip { samples: samples.collect(), ..prop.clip.clone() }
+        let mut clip = keyframe_clip(&prop.keys, prop.pivot, rate, teleport_distance);
+        clip.samples.iter_mut().for_each(|sample| *sample = trs(relative * sample.to_affine()));
+        clip
     };
     let motions: Vec<Clip> = props.iter().map(motion).collect();
     Some(combine_clips(clip, &body.rest_pose(), &motions))

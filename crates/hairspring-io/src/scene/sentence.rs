@@ -1,6 +1,10 @@
 //! Turns errors of TOML and serde about a scene file into a sentence with the line and the most similar valid
 //! name.
 
+use super::{
+    expected::{self, Place, is_bounded, needed, needed_table},
+    parameters::definition,
+};
 use crate::Problem;
 
 /// Line of a byte offset, counted from 1.
@@ -15,25 +19,46 @@ pub(super) fn problem(text: &str, error: &toml::de::Error) -> Problem {
             if let Some(sentence) = wrong_brackets(text, span.start, error.message()) {
                 return Problem::line(line_at(text, span.start), sentence);
             }
-            let message = reworded(error.message(), key_of(text, span.start));
+            let place = Place::of(text, span.start);
+            let message = misplaced(error.message(), place.as_ref())
+                .unwrap_or_else(|| reworded(error.message(), place.as_ref().map(|place| &place.path[..])));
             Problem::line(line_at(text, span.start), message)
         }
         None => Problem::whole(reworded(error.message(), None)),
     }
 }
 
-/// Converts an error in a table that begins at byte `start`, caused by the field `key` if it is known. The
-/// line is that of the key, if there is one after `start`.
+/// Converts an error in a table that begins at byte `start`, caused by the field with the full name `path` if it is known.
+/// The line is that of its key, if there is one after `start`.
 pub(super) fn problem_in_table(
     text: &str,
     start: usize,
     error: &toml::de::Error,
-    key: Option<&str>,
+    path: Option<&str>,
 ) -> Problem {
     let named = error.message().strip_prefix("unknown field ").and_then(|m| m.split('`').nth(1));
     let from = line_at(text, start);
-    let line = named.or(key).and_then(|key| line_of_key(text, from, key)).unwrap_or(from);
-    Problem::line(line, reworded(error.message(), key))
+    let line = named.or(path.map(key_of)).and_then(|key| line_of_key(text, from, key)).unwrap_or(from);
+    Problem::line(line, reworded(error.message(), path))
+}
+
+/// The key of a field in its table.
+fn key_of(path: &str) -> &str {
+    path.rsplit('.').next().unwrap_or(path)
+}
+
+/// The sentence for a value in the place of a table. serde also reads a list as a table, whose fields are the values of the
+/// list, and then speaks of the first that is wrong.
+fn misplaced(message: &str, place: Option<&Place>) -> Option<String> {
+    let of_type = ["invalid ", "wanted string or table", "expected table"];
+    let Place { path, word, found } =
+        place.filter(|_| of_type.iter().any(|start| message.starts_with(start)))?;
+    let needed = needed_table(path, word.as_deref()).filter(|_| found != "a table")?;
+    let not = match found == "a list" && needed.starts_with("a list") {
+        true => String::new(),
+        false => format!(", not {found}"),
+    };
+    Some(format!("`{}` needs {needed}{not}", key_of(path)))
 }
 
 /// The sentence for a header at byte `at` with one bracket too few or too many.
@@ -49,18 +74,6 @@ fn wrong_brackets(text: &str, at: usize, message: &str) -> Option<String> {
         (true, _) => Some(format!("`{name}` is one table; write [{name}], with one bracket")),
         (false, _) => None,
     }
-}
-
-/// The key whose value begins or continues at byte `at`, which may be in the header of its table.
-fn key_of(text: &str, at: usize) -> Option<&str> {
-    let line = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
-    if let Some(name) = text[line..].lines().next().and_then(header_of) {
-        return name.rsplit('.').next();
-    }
-    let before = text.get(..at)?;
-    let before = before[..before.rfind('=')?].trim_end();
-    let key = before.rsplit(|c: char| !(c.is_alphanumeric() || "_-".contains(c))).next()?;
-    Some(key).filter(|key| !key.is_empty())
 }
 
 /// The line that sets the setting `path`, such as `shape.fan.radius`, in the table that line `from` belongs to;
@@ -120,11 +133,11 @@ pub(super) fn nearest<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>)
     names.into_iter().map(|n| (far(n), n)).filter(near).min().map(|(_, n)| n)
 }
 
-/// Rewords an error of serde in terms of TOML. `key` is the field that has the wrong value.
+/// Rewords an error of serde in terms of TOML. `path` is the full name of the field that has the wrong value.
 ///
 /// ``unknown field `x`, expected one of `a`, `b` `` becomes a sentence with the most similar name first.
 /// ``invalid type: string "x", expected f32`` becomes a sentence about the value that the field needs.
-fn reworded(message: &str, key: Option<&str>) -> String {
+fn reworded(message: &str, path: Option<&str>) -> String {
     if let Some(rest) = message.strip_prefix("unknown field ").or(message.strip_prefix("unknown variant ")) {
         let quoted: Vec<&str> = rest.split('`').skip(1).step_by(2).collect();
         return match quoted.split_first() {
@@ -135,15 +148,15 @@ fn reworded(message: &str, key: Option<&str>) -> String {
     if let Some(name) = message.strip_prefix("missing field ") {
         return format!("{name} is missing");
     }
-    let field = key.map_or("the value".into(), |key| format!("`{key}`"));
+    let field = path.map_or("the value".into(), |path| format!("`{}`", key_of(path)));
     if message.starts_with("wanted exactly 1 element") {
         return "the table has more than one kind or none; give one, such as one shape in each [[collider]]"
             .into();
     }
     if message == "wanted string or table" {
-        return format!("{field} needs a name in quotes");
+        return format!("{field} needs {}", expected::name(path.and_then(definition)));
     }
-    if let Some(expected) = message.strip_prefix("expected ").filter(|_| key.is_some()) {
+    if let Some(expected) = message.strip_prefix("expected ").filter(|_| path.is_some()) {
         return format!("{field} needs {expected}");
     }
     let wrong = ["invalid type: ", "invalid value: ", "invalid length "].iter().find_map(|start| {
@@ -151,11 +164,20 @@ fn reworded(message: &str, key: Option<&str>) -> String {
         Some((start.contains("length"), found, expected))
     });
     match wrong {
-        Some((true, count, expected)) => format!("{field} needs {}, not {count} values", needed(expected)),
-        Some((false, found, expected)) => match largest(expected).filter(|_| is_above(found, expected)) {
-            Some(most) => format!("{field} needs a whole number of at most {most}, not {}", value(found)),
-            None => format!("{field} needs {}, not {}", needed(expected), value(found)),
-        },
+        Some((true, count, expected)) => {
+            format!("{field} needs {}, not {count} values", needed(expected, path))
+        }
+        Some((false, found, expected)) => {
+            let is_above = is_above(found, expected) && !is_bounded(path);
+            match largest(expected).filter(|_| is_above) {
+                Some(most) => format!("{field} needs a whole number of at most {most}, not {}", value(found)),
+                None => {
+                    let table = path.filter(|_| found != "map").and_then(|path| needed_table(path, None));
+                    let needed = table.unwrap_or_else(|| needed(expected, path));
+                    format!("{field} needs {needed}, not {}", value(found))
+                }
+            }
+        }
         None => message.to_owned(),
     }
 }
@@ -178,31 +200,6 @@ fn largest(expected: &str) -> Option<i128> {
 fn is_above(found: &str, expected: &str) -> bool {
     let number = found.strip_prefix("integer ").and_then(|_| value(found).parse::<i128>().ok());
     number.zip(largest(expected)).is_some_and(|(number, most)| number > most)
-}
-
-/// Describes the type that serde expected.
-fn needed(expected: &str) -> String {
-    let text = match expected {
-        "u8" | "u16" | "u32" | "u64" | "usize" => "a whole number, 0 or more",
-        "i8" | "i16" | "i32" | "i64" | "isize" => "a whole number",
-        "f32" | "f64" => "a number, such as 1.5",
-        "a boolean" => "true or false",
-        "a string" | "string" | "path string" | "a borrowed string" => "text in quotes",
-        "a sequence" => "a list, such as [1.0, 2.0]",
-        "a map" => "a table, such as { name = 1.0 }",
-        "variant identifier" => "a name in quotes",
-        "a sequence of 2 f32 values" => "two numbers, such as [1.5, 0.0]",
-        "a sequence of 3 f32 values" => "three numbers, such as [1.5, 0.0, 0.0]",
-        "a sequence of 4 f32 values" => "four numbers, such as [1.5, 0.0, 0.0, 0.0]",
-        _ if expected.starts_with("struct ") => "a table, such as { name = 1.0 }",
-        _ if expected.starts_with("enum ") => "a name in quotes",
-        _ if expected.starts_with("a tuple of size ") || expected.starts_with("an array of length ") => {
-            let count = expected.rsplit(' ').next().unwrap_or_default();
-            return format!("a list of {count} values");
-        }
-        _ => expected,
-    };
-    text.to_owned()
 }
 
 /// Describes the value that serde found.

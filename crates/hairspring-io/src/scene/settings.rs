@@ -1,9 +1,17 @@
 //! The settings that `Stage::update_settings` applies: a scene without its geometry.
 
 use super::{Reader, builtin, file::SceneFile, material};
-use crate::Result;
-use hairspring_scene::{Collider, Scene, SceneGroom};
+use crate::{Format, Result};
+use glam::Vec3;
+use hairspring_scene::{Collider, Scene, SceneGroom, Shape};
 use std::path::Path;
+
+/// Whether the portrait of the built-in head shows everything that moves: its own hair in its own motion, without wind.
+fn is_portrait(file: &SceneFile) -> bool {
+    let SceneFile { groom, clip, prop, wind, wind_source, .. } = file;
+    let is_calm = wind.velocity == Vec3::ZERO && wind_source.is_empty();
+    is_calm && groom.is_empty() && clip.is_none() && prop.is_empty()
+}
 
 impl Reader<'_> {
     /// Returns all settings; grooms have no strands. The built-in groom comes first.
@@ -25,6 +33,7 @@ impl Reader<'_> {
                 ..SceneGroom::default()
             });
         }
+        self.find_unit_of_hulls(file);
         Ok(Scene {
             name: file.name.clone().unwrap_or_else(|| stem(self.path)),
             grooms,
@@ -38,12 +47,31 @@ impl Reader<'_> {
             solver: file.solver,
             volume: file.volume,
             neighbours: file.neighbours,
-            camera: file.camera.or(base.camera),
+            camera: file.camera.or(base.camera.filter(|_| is_portrait(file))),
             picture: file.picture,
             ground: file.ground,
             hands: file.hand.clone(),
             ..Scene::default()
         })
+    }
+
+    /// Reads the unit of the body, if there are hulls whose files may have the same one. What is wrong with the body's
+    /// file is reported where the body is read.
+    fn find_unit_of_hulls(&mut self, file: &SceneFile) {
+        let is_open = |shape: &Shape| match shape {
+            Shape::Hull { file: Some(file), scale: None, .. } => {
+                matches!(Format::of(file), Some(Format::Obj | Format::TfxMesh))
+            }
+            _ => false,
+        };
+        if let Some(named) = &file.body
+            && file.collider.iter().any(|collider| is_open(&collider.shape))
+        {
+            let mut reader = Reader::new(self.path, self.text);
+            if reader.piece(named, "body").is_ok() {
+                self.whole = reader.whole;
+            }
+        }
     }
 
     /// Returns the colliders, with the points of hulls read from their files.

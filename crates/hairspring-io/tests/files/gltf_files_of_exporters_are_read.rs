@@ -158,6 +158,45 @@ fn uris_are_percent_decoded_and_each_file_is_read_once() {
 }
 
 #[test]
+fn data_uris_are_read_in_every_form() {
+    use base64::Engine;
+    let mut file = GltfFile::tetrahedron();
+    let base64 = base64::engine::general_purpose::STANDARD.encode(&file.bin);
+    let encoded = base64.replace('+', "%2B").replace('/', "%2f").replace('=', "%3D");
+    let broken: String = base64.as_bytes().chunks(20).map(|l| String::from_utf8_lossy(l) + "\r\n").collect();
+    let bytes: String = file.bin.iter().map(|byte| format!("%{byte:02x}")).collect();
+    for uri in [
+        format!("data:application/octet-stream;base64,{base64}"),
+        format!("data:;base64,{}", base64.trim_end_matches('=')),
+        format!("DATA:application/gltf-buffer;charset=x;BASE64,{encoded}"),
+        format!("data:application/octet-stream;base64,{broken}"),
+        format!("data:application/octet-stream,{bytes}"),
+    ] {
+        file.json["buffers"] = json!([{"uri": uri, "byteLength": file.bin.len()}]);
+        let (character, _) =
+            gltf::parse(file.json.to_string().as_bytes(), &|_| None).unwrap_or_else(|e| panic!("{uri}: {e}"));
+        assert_eq!(character.body.mesh.positions, TETRAHEDRON.map(Vec3::from), "{uri}");
+    }
+    for uri in ["data:;base64,AAA$SECRET", "data:SECRET"] {
+        file.json["buffers"] = json!([{"uri": uri, "byteLength": file.bin.len()}]);
+        let text = gltf::parse(file.json.to_string().as_bytes(), &|_| None).unwrap_err().text;
+        assert!(text.starts_with("the data URI of buffer 0") && text.contains("export"), "{text}");
+        assert!(!text.contains("SECRET"), "{text}");
+    }
+}
+
+#[test]
+fn blank_names_are_as_missing_ones() {
+    let mut file = GltfFile::tetrahedron();
+    file.json["meshes"][0]["name"] = json!("");
+    file.json["nodes"][0]["name"] = json!(" ");
+    file.json["materials"] = json!([{"name": ""}]);
+    file.primitive()["material"] = json!(0);
+    let body = read(&file).0.body;
+    assert_eq!((body.mesh.parts[0].name.as_str(), body.joints[0].name.as_str()), ("mesh0", "node0"));
+}
+
+#[test]
 fn quantized_meshes_are_read() {
     let mut file = GltfFile::tetrahedron();
     let corners: [[i16; 4]; 4] = [[0, 0, 0, 0], [100, 0, 0, 0], [0, 100, 0, 0], [0, 0, 100, 0]];

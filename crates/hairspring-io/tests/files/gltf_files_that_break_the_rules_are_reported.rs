@@ -50,6 +50,21 @@ fn a_matrix_with_shear_is_refused_and_another_is_read() {
 }
 
 #[test]
+fn a_matrix_without_size_and_a_rotation_of_zero_are_named() {
+    let mut file = GltfFile::tetrahedron();
+    let mut flat = glam::Mat4::IDENTITY.to_cols_array();
+    flat[5] = 0.0;
+    file.json["nodes"][0]["matrix"] = json!(flat);
+    let text = refused(&file).text;
+    assert!(
+        text.contains("the matrix of node 0 has a scale of 0 along y") && text.contains("above 0"),
+        "{text}"
+    );
+    file.json["nodes"][0] = json!({"mesh": 0, "rotation": [0, 0, 0, 0]});
+    assert!(refused(&file).text.contains("the rotation of node 0 is 0, 0, 0, 0"), "{}", refused(&file));
+}
+
+#[test]
 fn a_body_that_is_scaled_to_nothing_is_noted() {
     let mut file = GltfFile::tetrahedron();
     file.json["nodes"][0]["scale"] = json!([1.0, 0.0, 1.0]);

@@ -134,6 +134,20 @@ fn skipped_data_is_noted() {
 }
 
 #[test]
+fn half_a_segment_is_noted() {
+    let file = lines(3, |file, positions| {
+        let indices = file.bytes(5121, "SCALAR", 5, &[0, 1, 1, 2, 2]);
+        json!([{"mode": 1, "attributes": {"POSITION": positions}, "indices": indices}])
+    });
+    let (groom, notes) = read("a.glb", &file.glb());
+    assert_eq!((groom.strand_count(), groom.point_count()), (1, 3));
+    assert!(
+        notes.len() == 1 && notes[0].starts_with("1 primitives of lines end with half a segment"),
+        "{notes:?}"
+    );
+}
+
+#[test]
 fn more_objects_than_groups_are_one_group() {
     let mut file = lines(2, |_, positions| json!([{"mode": 3, "attributes": {"POSITION": positions}}]));
     file.json["scenes"] = json!([]);

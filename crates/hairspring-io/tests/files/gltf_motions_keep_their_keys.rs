@@ -1,5 +1,5 @@
-//! Promise: the last frame of a glTF motion is its last key, whatever its duration, and a joint that is scaled to 0 keeps
-//! the scale before it.
+//! Promise: a glTF motion has its keys at their times: all of them at the usual frame rates, and the last at any. A joint
+//! that is scaled to 0 keeps the scale before it.
 
 use crate::gltf_file::GltfFile;
 use hairspring_io::gltf;
@@ -34,6 +34,58 @@ fn the_last_frame_of_a_motion_is_its_last_key() {
         );
         assert!(clip.rate >= 60.0, "{} Hz", clip.rate);
     }
+}
+
+#[test]
+fn keys_at_the_frame_rates_of_programs_are_exact() {
+    for fps in [15.0, 23.976_023_976, 24.0, 25.0, 29.970_029_97, 30.0, 48.0, 50.0, 60.0, 100.0, 120.0f64] {
+        for interpolation in ["STEP", "LINEAR"] {
+            // Programs begin at frame 1, and round the times.
+            let times: Vec<f32> = (1..=9).map(|k| (f64::from(k) / fps) as f32 + 3e-6).collect();
+            let x = |k: usize| if k % 2 == 0 { 0.1 * k as f32 } else { -0.1 };
+            let values: Vec<f32> = (1..=9).flat_map(|k| [x(k), 0.0, 0.0]).collect();
+            let mut file = GltfFile::tetrahedron();
+            let (input, output) = (file.floats("SCALAR", &times), file.floats("VEC3", &values));
+            let animation = json!({
+                "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+                "samplers": [{"input": input, "output": output, "interpolation": interpolation}],
+            });
+            file.push("animations", animation);
+            let (character, _) = gltf::parse(&file.glb(), &|_| None).unwrap();
+            let clip = &character.clips[0];
+            for k in 1..=9 {
+                let at = clip.sample(k as f64 / fps)[0].translation.x;
+                assert!(
+                    (at - x(k)).abs() < 1e-4,
+                    "{interpolation} at {fps} fps, key {k}: {at}, not {}",
+                    x(k)
+                );
+            }
+            assert_eq!(clip.samples.last().unwrap().translation.x, x(9), "{interpolation} at {fps} fps");
+            assert!((59.9..=120.1).contains(&clip.rate), "{fps} fps are sampled at {} Hz", clip.rate);
+        }
+    }
+}
+
+#[test]
+fn a_motion_stands_still_until_its_first_key() {
+    let mut file = moving("translation", 2.0, [[0.0; 3], [1.0, 0.0, 0.0]]);
+    let times = file.floats("SCALAR", &[1.0, 2.0]);
+    file.json["animations"][0]["samplers"][0]["input"] = json!(times);
+    let (character, notes) = gltf::parse(&file.glb(), &|_| None).unwrap();
+    let clip = &character.clips[0];
+    assert!((clip.duration() - 2.0).abs() < 1e-9);
+    for (time, x) in [(0.0, 0.0), (1.0, 0.0), (1.5, 0.5), (2.0, 1.0)] {
+        assert!((clip.sample(time)[0].translation.x - x).abs() < 1e-5, "at {time} s");
+    }
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(notes[0].contains("first key at 1.00 s") && notes[0].contains("`start = 60`"), "{notes:?}");
+    // Hours before the first key, as in a recording with a time code, are left out.
+    let times = file.floats("SCALAR", &[36_000.0, 36_001.0]);
+    file.json["animations"][0]["samplers"][0]["input"] = json!(times);
+    let (character, notes) = gltf::parse(&file.glb(), &|_| None).unwrap();
+    assert!((character.clips[0].duration() - 1.0).abs() < 1e-2);
+    assert!(notes[0].contains("begins there"), "{notes:?}");
 }
 
 #[test]

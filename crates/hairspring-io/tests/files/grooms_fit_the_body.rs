@@ -139,6 +139,60 @@ fn stray_points_do_not_decide_the_unit() {
     }
 }
 
+/// `count` strands of `points` points of 20 cm, 2 cm apart, with the tips of the first `strays` 30 m away.
+fn small(count: usize, points: usize, strays: usize, far: f32) -> Vec<Vec<Vec3>> {
+    let at = |s: usize, k: usize| {
+        Vec3::new(0.02 * (s % 12) as f32, 1.6 + 0.2 * k as f32 / (points - 1) as f32, 0.0)
+    };
+    let mut strands: Vec<Vec<Vec3>> = (0..count).map(|s| (0..points).map(|k| at(s, k)).collect()).collect();
+    strands.iter_mut().take(strays).for_each(|strand| strand[points - 1] = Vec3::X * far);
+    strands
+}
+
+#[test]
+fn points_far_from_the_others_do_not_decide_the_unit_of_small_grooms() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.data");
+    for (count, points, strays, far) in [
+        (12, 8, 0, 0.0),
+        (12, 8, 1, 30.0),
+        (12, 16, 2, 30.0),
+        (100, 10, 15, 30.0),
+        (6, 8, 1, 1e30),
+        (12, 8, 1, f32::MAX),
+    ] {
+        write_data(&path, &small(count, points, strays, far));
+        let loaded = read_groom(&path, &ReadOptions::default()).unwrap();
+        let notes = loaded.notes.join("\n");
+        assert_eq!(loaded.scale, 1.0, "{count} strands, {strays} strays at {far}: {notes}");
+        let of_strays = format!("({strays} points far from the others do not count)");
+        assert_eq!(notes.contains(&of_strays), strays > 0, "{notes}");
+        assert!(!notes.contains("000000"), "{notes}");
+    }
+    // On a body, too.
+    let mut strands = fur(CENTER, 0.1, 0.2, 1.0);
+    strands.iter_mut().take(20).for_each(|strand| strand[5] = Vec3::X * 30.0);
+    let (_, notes) = on_head(&self::folder(&strands), "");
+    assert!(notes.contains("guessed meters") && notes.contains("(20 points far"), "{notes}");
+}
+
+#[test]
+fn strands_with_a_point_far_away_are_reported_and_others_are_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.data");
+    let read = |strands: &[Vec<Vec3>]| {
+        write_data(&path, strands);
+        read_groom(&path, &ReadOptions { scale: Some(1.0), up: None }).unwrap().notes
+    };
+    let mut strands = small(40, 8, 0, 0.0);
+    assert_eq!(read(&strands), Vec::<String>::new());
+    strands[7][0] = Vec3::ZERO;
+    strands[9][7] = Vec3::new(1.8, 1.8, 0.0);
+    let notes = read(&strands);
+    assert!(notes[0].starts_with("2 strands, the first of them strand 7, have a segment"), "{notes:?}");
+    assert!(notes[0].contains("(1.6") && notes[0].contains("correct it"), "{notes:?}");
+}
+
 #[test]
 fn roots_away_from_the_skin_are_reported() {
     // Nothing to say within a centimeter.
@@ -181,6 +235,11 @@ fn reversed_strands_are_reported_and_can_be_turned() {
         let (_, notes) = on_head(&folder, "");
         assert!(notes.contains("meters") && notes.contains("probably reversed"), "{notes}");
     }
+    // One of them is named with the remedy, too.
+    let mut strands = fur(CENTER, 0.1, 0.1, 1.0);
+    strands[3].reverse();
+    let (_, notes) = on_head(&folder(&strands), "scale = 1.0");
+    assert!(notes.contains("up to 0.1") && notes.contains("`reverse = \"nearest\"`"), "{notes}");
     let folder = folder(&fur(CENTER, 0.1, 0.1, 1.0));
     let (_, notes) = on_head(&folder, "scale = 1.0\nreverse = true");
     assert!(notes.contains("remove `reverse`"), "{notes}");
@@ -236,6 +295,13 @@ fn colors_of_a_file_replace_those_of_the_look_unless_the_scene_sets_otherwise() 
     }
     // Settings that are not colors are no conflict.
     assert_eq!(read("look.roughness = 0.5"), (true, String::new()));
+    // A file without colors has none to use.
+    let mut plain = samples::groom(4);
+    plain.colors.clear();
+    fs::write(folder.path().join("hair.hair"), samples::written(&plain, "hair")).unwrap();
+    assert_eq!(read(""), (false, String::new()));
+    let (colored, notes) = read("colors = \"file\"");
+    assert!(!colored && notes.contains("the file has no colors"), "{notes}");
 }
 
 #[test]
@@ -258,6 +324,7 @@ fn tressfx_text_is_read() {
     for (from, to, part) in [
         ("numStrands 2", "numStrands 3", "names 3 strands, but the file holds 2"),
         ("numVerts 4", "numVerts 5", "line 16: expected a coordinate of strand 0, found `strand`"),
+        ("numVerts 4", "numVerts 3", "line 15: strand 0 has more points than its `numVerts` names (3)"),
         ("numVerts 4", "numPoints 4", "line 11: expected `numVerts`"),
         ("0.0, 1.0, 0.5", "0.0, one, 0.5", "line 12: expected a coordinate of strand 0, found `one`"),
         ("version 2.0", "version 5", "line 1: version 5 is not supported"),
@@ -266,6 +333,19 @@ fn tressfx_text_is_read() {
         let error = tfx::parse(samples::tfx_2().replace(from, to).as_bytes()).unwrap_err().to_string();
         assert!(error.contains(part), "{to}: {error}");
     }
+    // The binary form names fixed points by their mass, and may be longer than its arrays.
+    let binary = |fixed: &[usize], extra: usize| {
+        let mut data = samples::written(&samples::groom(4), "tfx");
+        let positions = u32::from_le_bytes(data[12..16].try_into().unwrap()) as usize;
+        fixed.iter().for_each(|point| data[positions + 16 * point + 12..][..4].fill(0));
+        data.extend(vec![0; extra]);
+        fs::write(&path, data).unwrap();
+        read_groom(&path, &ReadOptions::default()).unwrap().notes.join("\n")
+    };
+    assert_eq!(binary(&[], 0), "");
+    assert!(binary(&[3, 7], 0).contains("2 of its tips are marked as fixed; they are simulated as free"));
+    assert!(binary(&[2], 0).contains("1 points after the first two"));
+    assert!(binary(&[], 40).contains("40 bytes after the last array are not used"));
     // Other formats are not taken for text.
     assert!(tfx::parse(b"HAIR").is_err() && hair::parse(samples::tfx_2().as_bytes()).is_err());
 }

@@ -100,6 +100,35 @@ fn a_root_on_the_floor_that_never_moves_is_not_lifted() {
 }
 
 #[test]
+fn a_first_frame_unlike_the_others_does_not_lift_or_sink_the_body() {
+    let source = captured(1.0);
+    // A rest pose at the origin, a jump, and a crouch, for some of 31 frames.
+    for (height, frames) in [(-1.0, 1), (0.4, 5), (-0.5, 5)] {
+        let motion = clip(&source, 31, |t, pose| {
+            if t * 60.0 < frames as f32 - 0.5 {
+                pose[0].translation.y += height;
+            }
+        });
+        for (target, on_floor) in [(captured(1.0), true), (bust(1.0, 1.5), false)] {
+            let carried = retarget(&source.joints, &motion, &target).unwrap();
+            assert_eq!(carried.on_floor, on_floor);
+            assert!((carried.first_frame_height.unwrap() - height).abs() < 1e-4);
+            let root = |f: usize| carried.clip.samples[f * target.joints.len()].translation.y;
+            assert!((root(30) - target.joints[0].rest.translation.y).abs() < 1e-4, "{height}: {}", root(30));
+            assert!((root(0) - root(30) - height).abs() < 1e-4);
+        }
+    }
+    // Frames of many heights, and two halves, keep the first one.
+    let climbs = clip(&source, 31, |t, pose| pose[0].translation.y += 4.0 * t);
+    let steps = clip(&source, 30, |t, pose| pose[0].translation.y += if t > 0.2 { 2.0 } else { 0.0 });
+    for motion in [climbs, steps] {
+        let carried = retarget(&source.joints, &motion, &source).unwrap();
+        assert_eq!(carried.first_frame_height, None);
+        assert!((carried.clip.samples[0].translation.y - 1.0).abs() < 1e-4);
+    }
+}
+
+#[test]
 fn prefixes_of_tools_and_rigs_are_ignored() {
     let source = captured(1.0);
     let motion = clip(&source, 2, |_, _| {});
@@ -167,9 +196,11 @@ fn read(text: &str) -> Result<(Clip, String), String> {
 
 #[test]
 fn a_head_alone_is_not_taken_for_a_person() {
-    for (height, unit) in
-        [("0.2", "meters (the skeleton is then 0.20 m"), ("20", "centimeters (the skeleton is then 0.20 m")]
-    {
+    for (height, unit) in [
+        ("0.2", "meters (the skeleton is then 0.20 m"),
+        ("20", "centimeters (the skeleton is then 0.20 m"),
+        ("250", "millimeters (the skeleton is then 0.25 m"),
+    ] {
         let text = format!(
             "HIERARCHY\nROOT Head\n{{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{{\nOFFSET 0 \
              {height} 0\n}}\n}}\nMOTION\nFrames: 1\nFrame Time: 0.02\n0 0 0\n"
@@ -177,6 +208,23 @@ fn a_head_alone_is_not_taken_for_a_person() {
         let (_, notes) = read(&text).unwrap();
         assert!(notes.contains(unit), "{height}: {notes}");
     }
+}
+
+#[test]
+fn headers_without_spaces_and_comments_are_read() {
+    let (want, _) = read(&bvh("Frames: 2\nFrame Time: 0.02\n", 2)).unwrap();
+    for header in [
+        "Frames:2\nFrame Time:0.02\n",
+        "Frames : 2\nFrame Time : 0.02\n",
+        "FRAMES :2\n# made by hand\nFrame time: 0.02\n  # frames\n",
+    ] {
+        let (clip, _) = read(&bvh(header, 2)).unwrap_or_else(|e| panic!("{header}: {e}"));
+        assert_eq!((clip.rate, &clip.samples), (want.rate, &want.samples), "{header}");
+    }
+    let error = read(&bvh("Frames 2\nFrame Time: 0.02\n", 2)).unwrap_err();
+    assert!(error.contains("line 17: expected `Frames:`, found `Frames`"), "{error}");
+    let error = read(&bvh("# a comment\nFrames:two\nFrame Time: 0.02\n", 2)).unwrap_err();
+    assert!(error.contains("line 18: expected the number of frames, found `two`"), "{error}");
 }
 
 #[test]

@@ -183,6 +183,45 @@ fn segments_in_any_order_and_direction_are_joined() {
 }
 
 #[test]
+fn strands_that_share_a_root_or_branch_stay_separate() {
+    let at = |points: &[usize]| -> Vec<Vec3> {
+        points.iter().map(|p| Vec3::new((p - 1) as f32 / 3.0, ((p - 1) % 3) as f32, 0.0)).collect()
+    };
+    let vertices: String =
+        (1..=6).map(|p| at(&[p])[0]).map(|p| format!("v {} {} {}\n", p.x, p.y, p.z)).collect();
+    for (lines, want) in [
+        ("l 1 2\nl 1 3\n", vec![at(&[1, 2]), at(&[1, 3])]),
+        ("l 2 3\nl 1 4\nl 1 2\nl 4 5\n", vec![at(&[1, 4, 5]), at(&[1, 2, 3])]),
+        ("l 2 3\nl 6 2\nl 6 4\nl 4 5\n", vec![at(&[6, 2, 3]), at(&[6, 4, 5])]),
+        ("l 1 3\nl 2 3\n", vec![at(&[1, 3]), at(&[2, 3])]),
+    ] {
+        let groom = obj::parse_groom(format!("{vertices}{lines}").as_bytes()).unwrap();
+        let got: Vec<Vec<Vec3>> = (0..groom.strand_count()).map(|s| groom.strand(s).to_vec()).collect();
+        assert_eq!(got, want, "{lines}");
+    }
+    let (branched, notes) = groom(&format!("{POINTS}l 1 2\nl 2 3\nl 2 4\n"));
+    assert_eq!(branched.strand_count(), 2);
+    assert!(notes[0].starts_with("strands branch at 1 vertices") && notes.len() == 1, "{notes:?}");
+}
+
+#[test]
+fn numbers_of_texture_coordinates_that_are_not_defined_are_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.obj");
+    let vertices = "v 0 0 0 1 0 0\nv 1 0 0\nv 0 1 0\n";
+    fs::write(&path, format!("{vertices}f 1/1/1 3/2/2 2/3/3\n")).unwrap();
+    let read = read_body(&path, &ReadOptions { scale: Some(1.0), up: None }).unwrap();
+    assert!(read.value.body.mesh.uvs.is_empty());
+    assert_eq!(read.value.body.mesh.triangles, [[0, 2, 1]]);
+    let notes = read.notes.join("\n");
+    assert!(notes.contains("3 corners name texture coordinates, but the file defines none"), "{notes}");
+    assert!(notes.contains("2 vertices have no color, but others do"), "{notes}");
+    // Where some are defined, others are wrong.
+    let error = obj::parse(format!("{vertices}vt 0 0\nf 1/1 3/2 2/1\n").as_bytes()).unwrap_err().to_string();
+    assert!(error.contains("texture coordinate 2, but only 1 are defined"), "{error}");
+}
+
+#[test]
 fn numbered_meshes_have_the_unit_of_the_body_and_no_gaps() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();

@@ -76,7 +76,12 @@ fn grouped(text: &str) -> String {
         };
         word.chars().enumerate().map(digit).collect::<String>()
     };
-    let words = text.split(' ').map(|word| if is_long(word) { commas(word) } else { word.to_owned() });
+    // Without a sign and the comma of the sentence.
+    let of_word = |word: &str| {
+        let number = word.trim_start_matches('-').trim_end_matches(',');
+        if is_long(number) { word.replacen(number, &commas(number), 1) } else { word.to_owned() }
+    };
+    let words = text.split(' ').map(of_word);
     words.collect::<Vec<_>>().join(" ")
 }
 

@@ -93,21 +93,25 @@ fn a_prop_rides_on_the_joint_that_it_names() {
             let root = stage.carried(Some("root"));
             turned =
                 turned.max(root.rotation.angle_between(glam::Quat::IDENTITY) + root.translation.length());
-            let lifted = stage.carried(Some("lid")).point(Vec3::ZERO) - root.point(Vec3::ZERO);
+            let lifted =
+                stage.carried(Some("lid")).transform_point(Vec3::ZERO) - root.transform_point(Vec3::ZERO);
             // Its keys move it in the space of the joint.
             let own = root.rotation.inverse() * lifted;
             assert!(own.x.abs() + own.z.abs() < 1e-4, "{motion}: the lid moves by {own}");
             for (now, rest) in stage.body().unwrap().positions[3..].iter().zip(&rest[3..]) {
                 assert!(
-                    now.distance(root.point(*rest + own)) < 1e-4,
+                    now.distance(root.transform_point(*rest + own)) < 1e-4,
                     "{motion}: {now} of {rest}, frame {frame}"
                 );
             }
             let ball = stage.colliders().last().unwrap().end;
-            assert!(ball.translation.distance(root.point(own)) < 1e-4, "{motion}: the ball is at {ball:?}");
+            assert!(
+                ball.translation.distance(root.transform_point(own)) < 1e-4,
+                "{motion}: the ball is at {ball:?}"
+            );
         }
         assert_eq!(turned > 0.1, !motion.is_empty(), "{motion}: the body moves by {turned}");
-        let own = stage.carried(Some("root")).inverse().after(&stage.carried(Some("lid"))).translation;
+        let own = (stage.carried(Some("root")).inverse() * stage.carried(Some("lid"))).translation;
         assert!(own.distance(Vec3::Y * 2.0) < 1e-4, "{motion}: the keys end at {own}");
     }
     // A second prop rides on the first, and an unknown joint is refused.

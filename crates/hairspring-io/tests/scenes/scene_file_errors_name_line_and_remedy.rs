@@ -51,9 +51,12 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         (format!("{GROOM}[ground]\ncolor = [0, 2, 0]\n"), &["line 4", "`color` must be three numbers"]),
         (format!("{GROOM}[ground]\ncolour = [0, 1, 0]\n"), &["line 4", "did you mean `color`?"]),
         (format!("{GROOM}material = \"a\"\n[material.a]\nfriction = 7\n"), &["line 5", "0 to 1"]),
+        // A material that no groom uses.
+        (format!("{GROOM}[material.m]\npreset = \"weavy\"\n"), &["line 4", "did you mean `wavy`?"]),
+        (format!("{GROOM}[material.m]\npreset = \"wavy\"\nbend = -3\n"), &["line 5", "`bend` must be"]),
         (
             format!("{GROOM}material = \"a\"\n[material.a]\nbend = 2\nmass_profile = [1, 0, 2]\n"),
-            &["line 6", "`mass_profile` must be 1 to 64 numbers above 0"],
+            &["line 6", "`mass_profile` must be 1 to 64 numbers, 0.0001 to 10000"],
         ),
         (
             format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [1, 101]\n"),
@@ -64,7 +67,10 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
             format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [{}]\n", ["1"; 65].join(", ")),
             &["line 5", "1 to 64"],
         ),
-        (format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [1, nan]\n"), &["line 5", "above 0"]),
+        (
+            format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = [1, nan]\n"),
+            &["line 5", "0.0001 to 10000"],
+        ),
         (
             format!("{GROOM}material = \"a\"\n[material.a]\nmass_profile = 3\n"),
             &["line 5", "`mass_profile` needs a list"],
@@ -191,7 +197,7 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
             &["did you mean `pull`?"],
         ),
         (format!("{GROOM}bones = \"x.tfxbone\"\n"), &["x.tfxbone was not found"]),
-        (format!("{GROOM}[turbulence]\nsize = 0\n"), &["line 4", "`size` must be above 0 [m]"]),
+        (format!("{GROOM}[turbulence]\nsize = 0\n"), &["line 4", "`size` must be 1e-6 to 1000000 [m]"]),
         (format!("{GROOM}[wind_occlusion]\nhair = -1\n"), &["line 4", "`hair` must be 0 or more [1/m]"]),
         (
             format!("{GROOM}[[wind_source]]\nshape.fna = {{ center = [0, 0, 0] }}\n"),
@@ -299,24 +305,73 @@ fn values_of_the_wrong_type_are_described_in_toml() {
         ),
         ("[wind]\nvelocity = [1, 0]\n".into(), &["line 4", "`velocity` needs", three]),
         ("[wind]\nvelocity = [1, 0, \"x\"]\n".into(), &["line 4", "`velocity` needs a number"]),
-        ("[wind]\ngust = true\n".into(), &["line 4", "`gust` needs a number, such as 1.5, not true"]),
+        ("[wind]\ngust = true\n".into(), &["line 4", "`gust` needs a number, such as 0.5, not true"]),
         (
             "[solver]\nsubsteps = 4.5\n".into(),
-            &["line 4", "`substeps` needs a whole number, 0 or more, not 4.5"],
+            &["line 4", "`substeps` needs a whole number, 1 to 1024, not 4.5"],
         ),
         (
             "[solver]\nsubsteps = -4\n".into(),
-            &["line 4", "`substeps` needs a whole number, 0 or more, not -4"],
+            &["line 4", "`substeps` needs a whole number, 1 to 1024, not -4"],
         ),
         ("[solver]\nsubsteps = \"4\"\n".into(), &["line 4", "`substeps` needs a whole number"]),
         (
             "[solver]\nsubsteps = 99999999999999999999\n".into(),
-            &["line 4", "`substeps` needs a whole number of at most 4294967295, not 99999999999999999999"],
+            &["line 4", "`substeps` needs a whole number, 1 to 1024, not 99999999999999999999"],
         ),
-        ("[solver]\nsubsteps = 5000000000\n".into(), &["line 4", "at most 4294967295, not 5000000000"]),
+        ("[solver]\nsubsteps = 5000000000\n".into(), &["line 4", "1 to 1024, not 5000000000"]),
+        (
+            "[clip]\nstart = 99999999999999999999\n".into(),
+            &["line 4", "a whole number of at most 9223372036854775807, not 99999999999999999999"],
+        ),
         ("[solver]\nsag_free = 1\n".into(), &["line 4", "`sag_free` needs true or false, not 1"]),
         ("[volume]\nmethod = 3\n".into(), &["line 4", "`method` needs a name in quotes"]),
         ("thicken = 3\n".into(), &["line 3", "`thicken` needs a table"]),
+        // A table that is not one, and a list in its place.
+        (
+            "[[collider]]\nshape = \"capsule\"\n".into(),
+            &[
+                "line 4",
+                "`shape` needs a table, such as { capsule = { a = [1.5, 0.0, 0.0], b =",
+                "not the text",
+            ],
+        ),
+        (
+            "[[collider]]\nshape = 3\n".into(),
+            &[
+                "line 4",
+                "`shape` needs a table, such as { sphere = { center = [1.5, 0.0, 0.0], radius = 1.5 } }, not 3",
+            ],
+        ),
+        (
+            "[clip]\nkeys = [[0, 1]]\n".into(),
+            &["line 4", "`keys` needs a list of tables, such as [{ time = 1.5 }]"],
+        ),
+        (
+            "[[prop]]\nkeys = 3\n".into(),
+            &["line 4", "`keys` needs a list of tables, such as [{ time = 1.5 }], not 3"],
+        ),
+        (
+            "[[hand]]\ntool.grab = [1, 2]\n".into(),
+            &[
+                "line 4",
+                "`grab` needs a table, such as { center = [1.5, 0.0, 0.0], radius = 1.5 }, not a list",
+            ],
+        ),
+        (
+            "[solver]\nsubsteps = true\n".into(),
+            &["line 4", "`substeps` needs a whole number, 1 to 1024, not true"],
+        ),
+        ("[solver]\ncontact = 3\n".into(), &["line 4", "`contact` needs a name in quotes, one of: \""]),
+        ("look = 3\n".into(), &["line 3", "`look` needs a table, such as { root_color = [", "not 3"]),
+        (
+            format!("{MATERIAL}global_shape = 3\n"),
+            &["line 5", "`global_shape` needs a table, such as { pull = "],
+        ),
+        (
+            "[body]\nfile = \"head.obj\"\nparts = \"scalp\"\n".into(),
+            &["line 5", "a list, such as [\"name\"]"],
+        ),
         ("thicken = { copies = \"x\" }\n".into(), &["line 3", "`copies` needs a whole number"]),
         (
             "look.root_color = 3\n".into(),
@@ -329,7 +384,7 @@ fn values_of_the_wrong_type_are_described_in_toml() {
         (format!("{MATERIAL}friction = \"low\"\n"), &["line 5", "`friction` needs a number"]),
         (
             format!("{MATERIAL}bend = 1\nfriction = [1]\n"),
-            &["line 6", "`friction` needs a number, such as 1.5, not a list"],
+            &["line 6", "`friction` needs a number, such as 0.5, not a list"],
         ),
         (format!("{MATERIAL}global_shape = {{ pull = \"x\" }}\n"), &["`pull` needs a number"]),
         ("transform.position = 3\n".into(), &["line 3", "`position` needs", three]),

@@ -139,3 +139,55 @@ fn vertex_colors_out_of_range_are_reported_and_used() {
     assert_eq!(notes(&loaded.notes, "head.obj: colors of up to 255"), 1, "{:?}", loaded.notes);
     assert_eq!(loaded.value.body.unwrap().mesh.colors[0], Vec3::X);
 }
+
+#[test]
+fn meshes_without_a_unit_have_that_of_the_body_if_they_are_within_its_reach() {
+    let folder = folder();
+    // A body of 1.8 m in centimeters, an eye of 6 cm, and a collision mesh of another program in meters.
+    let scaled = |low: [f32; 3], size: f32| {
+        cube(false, Vec3::ZERO)
+            .lines()
+            .map(|line| match line.strip_prefix("v ") {
+                Some(numbers) => {
+                    let p: Vec<f32> = numbers.split(' ').map(|x| x.parse().unwrap()).collect();
+                    let [x, y, z] = [0, 1, 2].map(|k| low[k] + p[k] / 0.2 * size);
+                    format!("v {x} {y} {z}\n")
+                }
+                None => format!("{line}\n"),
+            })
+            .collect::<String>()
+    };
+    let write = |name: &str, text: String| fs::write(folder.path().join(name), text).unwrap();
+    write("body.obj", scaled([-90.0, 0.0, -90.0], 180.0));
+    write("eye.obj", scaled([0.0, 160.0, 8.0], 6.0));
+    write("meters.obj", scaled([-0.9, 0.0, -0.9], 1.8));
+    let hull = "[[collider]]\nshape = { hull = { file = \"eye.obj\" } }\n";
+    let text = format!(
+        "[body]\nfile = \"body.obj\"\n[[body.more]]\nfile = \"eye.obj\"\n[collision]\nfile = \"eye.obj\"\n[[sheet]]\nfile = \"eye.obj\"\n{hull}{GROOM}"
+    );
+    let read = |text: &str| {
+        let loaded = read(folder.path(), text).unwrap();
+        (loaded.value, loaded.notes)
+    };
+    let (scene, reported) = read(&text);
+    let size = |points: &[Vec3]| {
+        let heights = || points.iter().map(|p| p.y);
+        (heights().fold(f32::INFINITY, f32::min), heights().fold(f32::NEG_INFINITY, f32::max))
+    };
+    let eye = |points: &[Vec3]| {
+        let (low, high) = size(points);
+        assert!((low - 1.6).abs() < 1e-4 && (high - 1.66).abs() < 1e-4, "{low} to {high}: {reported:?}");
+    };
+    eye(&scene.body.as_ref().unwrap().mesh.positions[8..]);
+    eye(&scene.collision.as_ref().unwrap().mesh.positions);
+    eye(&scene.sheets[0].body.mesh.positions);
+    let hairspring_scene::Shape::Hull { points, .. } = &scene.colliders[0].shape else { panic!() };
+    eye(points);
+    assert_eq!(notes(&reported, "eye.obj: the file has no unit; read in that of the body, centimeters"), 1);
+    assert_eq!(notes(&reported, "body.obj: the file has no unit; guessed centimeters"), 1);
+    // A mesh that fits the body in its own unit keeps it.
+    let (scene, reported) =
+        read(&format!("[body]\nfile = \"body.obj\"\n[collision]\nfile = \"meters.obj\"\n{GROOM}"));
+    let (low, high) = size(&scene.collision.unwrap().mesh.positions);
+    assert!(low.abs() < 1e-4 && (high - 1.8).abs() < 1e-4, "{low} to {high}: {reported:?}");
+}

@@ -250,7 +250,7 @@ impl StagedBody {
     /// that they moved from and the current time, or `None` if they did not move.
     fn rebuild_surfaces(&mut self, scene: &Scene, since: Option<(f64, f64)>) {
         let anchor = self.pose.anchor();
-        let within = self.reach.bounds(self.pose.positions(), |p| anchor.inverse_point(p));
+        let within = self.reach.bounds(self.pose.positions(), |p| anchor.inverse_transform_point(p));
         let parts = |Deforming { surface, mesh, rest, .. }: &Deforming| {
             let body = Deforming::body(rest, *mesh, scene);
             body.map_or(1, |body| surface.parts(body, self.pose.current(), within))
@@ -307,7 +307,7 @@ impl StagedBody {
                 Carrier::Anchor => Some(anchor),
             };
             if let Some(by) = joint.and_then(by) {
-                collider.start = by.after(&collider.start);
+                collider.start = by * collider.start;
             }
         }
         self.charged.cut(&scene.charged, by, &mut self.colliders[self.carriers.len()..]);

@@ -1,7 +1,7 @@
 //! The posed body: joints, skin or vertex cache, and the cuts of its clip.
 
 use super::PosedBody;
-use crate::{Scene, VertexCache};
+use crate::{Scene, SceneGroom, VertexCache};
 use glam::{Affine3A, Vec3};
 use hairspring::{
     body::{Body, Cuts, Mesh},
@@ -61,7 +61,7 @@ impl BodyPose {
     /// initially.
     pub(super) fn new(scene: &Scene, cache: Option<VertexCache>) -> Self {
         let rest = scene.body.as_ref().map(|b| b.world(&b.rest_pose())).unwrap_or_default();
-        let anchor = scene.body.as_ref().map_or(0, |b| anchor_joint(b, scene));
+        let anchor = scene.body.as_ref().map_or(0, |b| anchor_joint(b, &scene.grooms));
         let mut pose = Self {
             apart: false,
             current: Pose::default(),
@@ -151,7 +151,7 @@ impl BodyPose {
     pub(super) fn cut(&self, scene: &Scene, times: (f64, f64)) -> Vec<Option<RigidTransform>> {
         let (Some(body), Some(clip)) = (&scene.body, &scene.clip) else { return Vec::new() };
         let moved = self.moved;
-        let in_world = |by: RigidTransform| moved.after(&by.after(&moved.inverse()));
+        let in_world = |by: RigidTransform| moved * (by * moved.inverse());
         self.cuts.motion_between(body, clip, times).into_iter().map(|by| by.map(in_world)).collect()
     }
 
@@ -236,11 +236,11 @@ fn first_pose(body: &Body, anchor: usize, scene: &Scene) -> Vec<Affine3A> {
     body.world(&pose)
 }
 
-/// Returns the joint that carries most of the vertices near the roots; joint 0 for a rigid body.
-fn anchor_joint(body: &Body, scene: &Scene) -> usize {
+/// Returns the joint that carries most of the vertices near the roots of `grooms`; joint 0 for a rigid body.
+pub(super) fn anchor_joint(body: &Body, grooms: &[SceneGroom]) -> usize {
     let Some(skin) = &body.skin else { return 0 };
     let mut weight = vec![0.0; body.joints.len()];
-    for groom in &scene.grooms {
+    for groom in grooms {
         for root in &groom.groom.roots {
             for v in body.mesh.triangles[root.triangle as usize] {
                 for (j, w) in skin.joints[v as usize].iter().zip(skin.weights[v as usize]) {

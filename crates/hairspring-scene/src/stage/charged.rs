@@ -55,9 +55,9 @@ impl StagedCharged {
         for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
             let collider = if charged.solid { colliders.next() } else { None };
             let Some(by) = joint.and_then(&by) else { continue };
-            ball.centers[0] = by.point(ball.centers[0]);
+            ball.centers[0] = by.transform_point(ball.centers[0]);
             if let Some(collider) = collider {
-                collider.start = by.after(&collider.start);
+                collider.start = by * collider.start;
             }
         }
     }
@@ -74,7 +74,7 @@ impl StagedCharged {
         let mut colliders = colliders.iter_mut();
         for ((ball, charged), joint) in self.balls.iter_mut().zip(settings).zip(&self.joints) {
             let pose = carried(*joint);
-            ball.centers[1] = pose.point(charged.center(time));
+            ball.centers[1] = pose.transform_point(charged.center(time));
             if charged.solid
                 && let Some(collider) = colliders.next()
             {

@@ -1,9 +1,11 @@
 //! What a scene must fulfill to be played, and the errors of one that does not.
 
-use crate::{Scene, SceneError};
-use glam::Vec3;
+use super::body_pose::anchor_joint;
+use crate::{Scene, SceneError, SceneGroom};
+use glam::{Affine3A, Vec3};
 use hairspring::{
-    groom::{Groom, Imprecise, MAX_COORDINATE, first_imprecise},
+    body::{Body, Clip},
+    groom::{Groom, Imprecise, MAX_COORDINATE, first_imprecise, first_imprecise_moved},
     settings::{OutOfRange, Validate},
 };
 
@@ -94,6 +96,18 @@ pub enum StageError {
         /// The strand and its distance.
         why: Imprecise,
     },
+    /// The clip moves a strand too far from the origin for single precision.
+    #[error("groom {groom}, in frame {frame} of the clip '{clip}': {why}")]
+    MovedTooFar {
+        /// Index of the groom in the scene.
+        groom: usize,
+        /// Index of the frame.
+        frame: usize,
+        /// Name of the clip.
+        clip: String,
+        /// The strand and its distance.
+        why: Imprecise,
+    },
     /// A coordinate or length is not finite or too large.
     #[error("{what} is not finite or exceeds {MAX_COORDINATE} m, the largest length that is simulated")]
     OutOfRange {
@@ -145,6 +159,31 @@ pub(super) fn check(scene: &Scene) -> Result<(), StageError> {
         });
     }
     check_vertex_cache(scene)
+}
+
+/// Checks that the clip does not move a groom so far from the origin that the groom would be refused there. The
+/// roots must be bound to the body, and the scene checked otherwise.
+pub(super) fn check_motion(scene: &Scene) -> Result<(), StageError> {
+    let (Some(body), Some(clip)) = (&scene.body, &scene.clip) else { return Ok(()) };
+    for (groom, scene_groom) in scene.grooms.iter().enumerate() {
+        let Some((frame, by)) = farthest_pose(body, clip, scene_groom) else { continue };
+        if let Some(why) = first_imprecise_moved(&scene_groom.groom, &by) {
+            return Err(StageError::MovedTooFar { groom, frame, clip: clip.name.clone(), why });
+        }
+    }
+    Ok(())
+}
+
+/// Returns the frame of `clip` in which a groom is farthest from the origin, and the motion of the groom since rest.
+/// `None` for a groom without points and a clip without frames.
+fn farthest_pose(body: &Body, clip: &Clip, groom: &SceneGroom) -> Option<(usize, Affine3A)> {
+    let joint = anchor_joint(body, std::slice::from_ref(groom));
+    let rest = body.world(&body.rest_pose()).get(joint)?.inverse();
+    let root = groom.groom.points.first()?;
+    let pose = |(frame, pose)| (frame, body.world(pose)[joint] * rest);
+    let distance = |by: &Affine3A| by.transform_point3(*root).abs().max_element();
+    let frames = clip.samples.chunks_exact(clip.joint_count.max(1)).enumerate().map(pose);
+    frames.max_by(|(_, a), (_, b)| distance(a).total_cmp(&distance(b)))
 }
 
 /// Checks radii and multipliers, which a scene made by code may have of any value.

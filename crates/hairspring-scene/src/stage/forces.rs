@@ -10,7 +10,7 @@ use std::sync::Arc;
 impl Stage {
     /// Adds a force on all simulated strands, until it is removed. Strands are counted in the order of
     /// [`Stage::simulated_offsets`]. See [`Simulation::add_force`].
-    pub fn add_force(&mut self, force: Arc<dyn ForceField>) -> ForceId {
+    pub fn add_force(&mut self, force: impl ForceField + 'static) -> ForceId {
         self.simulation.add_force(force)
     }
 

@@ -66,7 +66,7 @@ fn shrink<'a>(
     pose: &RigidTransform,
     strands: impl Iterator<Item = &'a [Vec3]>,
 ) -> Motion {
-    let own = |points: &[Vec3]| points.iter().map(|p| pose.inverse_point(*p)).collect::<Vec<_>>();
+    let own = |points: &[Vec3]| points.iter().map(|p| pose.inverse_transform_point(*p)).collect::<Vec<_>>();
     let through: Vec<Vec<Vec3>> = strands.map(own).filter(|points| passes_through(sheet, points)).collect();
     if through.is_empty() {
         return Motion::Stay;
@@ -91,8 +91,8 @@ fn passes_through(sheet: &ThinShell, points: &[Vec3]) -> bool {
 
 /// Returns whether a strand in the world passes through a thin shell.
 pub(super) fn passes_through_shell(pose: &ColliderPose, points: &[Vec3]) -> bool {
-    let ColliderShape::Sheet(sheet) = &pose.shape else { return false };
-    let (turn, at) = (pose.end.0.transpose(), pose.end.1);
+    let ColliderShape::Sheet(sheet) = pose.shape() else { return false };
+    let (turn, at) = (pose.end().0.transpose(), pose.end().1);
     passes_through(sheet, &points.iter().map(|p| turn * (*p - at)).collect::<Vec<_>>())
 }
 

@@ -105,6 +105,6 @@ impl StagedHands {
 
     fn pose(&self, k: usize, hand: &Hand, time: f64, body: &StagedBody) -> RigidTransform {
         let joint = body.pose().carried(self.joints[k]);
-        RigidTransform { translation: joint.point(hand.moved(time)), ..joint }
+        RigidTransform { translation: joint.transform_point(hand.moved(time)), ..joint }
     }
 }

@@ -1,7 +1,7 @@
 //! What a user should know about a scene before it plays.
 
 use super::Stage;
-use hairspring::collide::ColliderShape;
+use hairspring::{collide::ColliderShape, simulation::VolumeReport};
 
 /// Thickness below which hair may pass through a hull [m]. The side on which hair was is remembered for boxes, capsules
 /// and sheets only.
@@ -10,7 +10,7 @@ const THIN_HULL: f32 = 5e-3;
 impl Stage {
     /// Returns a sentence for each thing that cannot be as the scene asks: a collision mesh that is too thin for its
     /// distance field, thin hulls, hair that starts inside colliders, more guides than asked for, and a volume whose cells
-    /// are larger than requested.
+    /// are enlarged.
     /// It describes the current state, so it is called before the first step.
     pub fn notes(&self) -> Vec<String> {
         let thin = self.thin_mesh().map(|thin| thin.to_string());
@@ -36,14 +36,18 @@ impl Stage {
         })
     }
 
-    /// Describes cells of the volume that are larger than the scene asks for.
+    /// Describes cells of the volume that are larger than the scene asks for or than the hair needs.
     fn enlarged_cells(&self) -> Option<String> {
-        let requested = self.scene.volume.cell?;
-        let report = self.volume().filter(|report| report.cell_enlarged)?;
-        Some(format!(
-            "volume.cell = {requested} would need more cells than a grid can have; cells of {:.3} m are used",
-            report.cell
-        ))
+        let VolumeReport { cell, .. } = self.volume().filter(|report| report.cell_enlarged)?;
+        Some(match self.scene.volume.cell {
+            Some(requested) => format!(
+                "volume.cell = {requested} would need more cells than a grid can have; cells of {cell:.3} m are used"
+            ),
+            None => format!(
+                "the hair is spread so far that the volume's grid would have more than two million cells; cells of \
+                 {cell:.3} m are used, in which hair acts on hair more coarsely"
+            ),
+        })
     }
 }
 

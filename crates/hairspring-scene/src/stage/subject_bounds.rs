@@ -20,7 +20,13 @@ const NEARBY: f32 = 0.15;
 const MARGIN: [f32; 2] = [0.06, 0.12];
 
 /// Wind speed at which long hair is nearly horizontal [m/s].
-const STRONG_WIND: f32 = 3.0;
+const STRONG_WIND: f32 = 2.0;
+
+/// Time over which the acceleration of a root is measured [s].
+const INTERVAL: f64 = 1.0 / 15.0;
+
+/// Acceleration that throws hair to its length [m/s²].
+const STANDARD_GRAVITY: f32 = 9.81;
 
 /// A box (min, max) [m].
 type Bounds = (Vec3, Vec3);
@@ -30,8 +36,8 @@ impl Stage {
     /// swings: the hair, and the part of the body near it. It depends on the scene only, not on the current
     /// time. `None` if no point is finite.
     ///
-    /// Nothing is simulated: hair moves rigidly with its root, is blown in the direction of the wind, and
-    /// falls if it starts out of balance.
+    /// Nothing is simulated: hair moves rigidly with its root, is blown in the direction of the wind at the height of
+    /// a gust, is thrown against the acceleration of its root, and falls if it starts out of balance.
     pub fn subject_bounds(&self) -> Option<Bounds> {
         let points = self.hair.iter().flat_map(|hair| &hair.groom().points).copied();
         let rest = points.fold(None, around)?;
@@ -90,8 +96,10 @@ struct Subject<'a> {
     first: Option<Posed<'a>>,
     /// Vertices of the body near the hair.
     vertices: Vec<u32>,
-    /// Displacements of a tip from its root due to wind and gravity, relative to the length of the hair.
-    pulls: Vec<Vec3>,
+    /// Displacement of a tip from its root due to wind, relative to the length of the hair.
+    blown: Vec3,
+    /// The same due to gravity, if hair starts out of balance.
+    fallen: Vec3,
 }
 
 impl<'a> Subject<'a> {
@@ -110,36 +118,49 @@ impl<'a> Subject<'a> {
             let every = vertices.len().div_ceil(SAMPLES).max(1);
             vertices = vertices.into_iter().step_by(every).collect();
         }
-        let blown = wind.velocity.normalize_or_zero() * (wind.velocity.length() / STRONG_WIND).min(1.0);
+        let gust = wind.velocity.length() * (1.0 + wind.gust);
+        let blown = wind.velocity.normalize_or_zero() * (gust / STRONG_WIND).min(1.0);
         let falls = !solver.sag_free && solver.preroll == 0.0;
         let fallen = if falls { gravity.normalize_or_zero() } else { Vec3::ZERO };
-        let pulls = [blown, fallen].into_iter().filter(|pull| *pull != Vec3::ZERO).collect();
-        Self { stage, first, vertices, pulls }
+        Self { stage, first, vertices, blown, fallen }
     }
 
     /// The box in the pose at `time` [s].
     fn bounds(&self, time: f64) -> Option<Bounds> {
-        let Stage { scene, body, hair, .. } = self.stage;
-        let now = match (&scene.body, body.pose().at(scene, time)) {
-            (Some(body), Some(pose)) => Some(Posed::new(body, pose)),
-            _ => None,
-        };
-        let now = now.as_ref().or(self.first.as_ref());
-        let skin = now.into_iter().flat_map(|now| self.vertices.iter().map(|v| now.vertex(*v)));
+        let end = self.stage.scene.clip.as_ref().map_or(0.0, |clip| clip.duration());
+        let poses = [-INTERVAL, 0.0, INTERVAL].map(|later| self.posed((time + later).clamp(0.0, end)));
+        let poses = poses.each_ref().map(|pose| pose.as_ref().or(self.first.as_ref()));
+        let skin = poses[1].into_iter().flat_map(|now| self.vertices.iter().map(|v| now.vertex(*v)));
         let skin = skin.fold(None, around);
-        hair.iter().fold(skin, |bounds, hair| self.hair_bounds(hair, now, bounds))
+        self.stage.hair.iter().fold(skin, |bounds, hair| self.hair_bounds(hair, poses, bounds))
     }
 
-    /// Extends `bounds` by the hair of a groom, with the body in the pose `now`.
-    fn hair_bounds(&self, hair: &StagedHair, now: Option<&Posed>, bounds: Option<Bounds>) -> Option<Bounds> {
+    /// The body at `time` [s]; `None` without a motion.
+    fn posed(&self, time: f64) -> Option<Posed<'a>> {
+        let Stage { scene, body, .. } = self.stage;
+        Some(Posed::new(scene.body.as_ref()?, body.pose().at(scene, time)?))
+    }
+
+    /// Extends `bounds` by the hair of a groom, with the body in the second of three poses, one [`INTERVAL`] apart.
+    fn hair_bounds(
+        &self,
+        hair: &StagedHair,
+        poses: [Option<&Posed>; 3],
+        bounds: Option<Bounds>,
+    ) -> Option<Bounds> {
         let groom = hair.groom();
         let every = groom.strand_count().div_ceil(SAMPLES).max(1);
         (0..groom.strand_count()).step_by(every).fold(bounds, |bounds, s| {
             let strand = groom.strand(s);
-            let (root, turn) = self.root(groom, s, now);
+            let [(before, _), (root, turn), (after, _)] = poses.map(|pose| self.root(groom, s, pose));
             let length: f32 = strand.windows(2).map(|w| w[0].distance(w[1])).sum();
             let carried = strand.iter().map(|p| root + turn * (*p - strand[0]));
-            let pulled = self.pulls.iter().map(|pull| root + *pull * length);
+            // An acceleration like that of gravity throws hair to its length, in the wind and without it.
+            let acceleration = (after - 2.0 * root + before) / (INTERVAL * INTERVAL) as f32;
+            let thrown = (-acceleration / STANDARD_GRAVITY).clamp_length_max(1.0);
+            let pulls = [self.blown, thrown, (self.blown + thrown).clamp_length_max(1.0), self.fallen];
+            let pulled =
+                pulls.into_iter().filter(|pull| *pull != Vec3::ZERO).map(|pull| root + pull * length);
             carried.chain(pulled).fold(bounds, around)
         })
     }

@@ -5,7 +5,7 @@ use super::{body_pose::Pose, fast_surface::FastSurfaceProbe};
 use glam::Vec3;
 use hairspring::{
     body::Body,
-    collide::{ColliderShape, SignedDistanceField, ThinShell, Voxelizer},
+    collide::{ColliderShape, SignedDistanceField, ThinShell, Voxelizer, VoxelizerInput},
 };
 use std::sync::Arc;
 
@@ -65,7 +65,12 @@ impl SurfaceKind {
     ) {
         match (self, shape) {
             (Self::Field(cell), ColliderShape::Field(grid)) => {
-                voxelizer.update(Arc::make_mut(grid), now, before, triangles, within, cell);
+                let input = VoxelizerInput {
+                    previous_positions: before,
+                    within,
+                    ..VoxelizerInput::new(now, triangles, cell)
+                };
+                voxelizer.update(Arc::make_mut(grid), &input);
             }
             (Self::Sheet(thickness), ColliderShape::Sheet(sheet)) => {
                 Arc::make_mut(sheet).update(now, before, triangles, within, thickness);
@@ -108,7 +113,12 @@ impl Surface {
             return 1;
         }
         let place = pose.vertices(body);
-        self.limbs.parts(&body.mesh, &self.now, |v| pose.anchor.inverse_point(place(v as usize)), within)
+        self.limbs.parts(
+            &body.mesh,
+            &self.now,
+            |v| pose.anchor.inverse_transform_point(place(v as usize)),
+            within,
+        )
     }
 
     /// Rebuilds `shape` from `body` in the last of the poses, and its previous slices from the poses before
@@ -144,7 +154,8 @@ impl Surface {
         std::mem::swap(&mut self.now, &mut self.before);
         let place = pose.vertices(body);
         self.now.clear();
-        self.now.extend((0..body.mesh.positions.len()).map(|v| pose.anchor.inverse_point(place(v))));
+        self.now
+            .extend((0..body.mesh.positions.len()).map(|v| pose.anchor.inverse_transform_point(place(v))));
         let moved =
             self.now.iter().zip(&self.before).map(|(a, b)| a.distance_squared(*b)).fold(0.0, f32::max);
         let (SurfaceKind::Field(fine) | SurfaceKind::Sheet(fine)) = self.making;

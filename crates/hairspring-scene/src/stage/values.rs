@@ -177,7 +177,9 @@ impl Stage {
             values.iter().copied().fold(f32::NEG_INFINITY, f32::max)
         };
         let depth = |p: &Vec3| {
-            let depth = |o: &hairspring::collide::MovingCollider| -o.shape.distance(o.end.inverse_point(*p));
+            let depth = |o: &hairspring::collide::MovingCollider| {
+                -o.shape.distance(o.end.inverse_transform_point(*p))
+            };
             self.body.colliders().iter().map(depth).fold(0.0, f32::max)
         };
         let deepest = |_, points: &[Vec3]| points.iter().skip(1).map(depth).fold(0.0, f32::max);

@@ -2,11 +2,12 @@
 //!
 //! In a clip of 30 Hz, the body jumps by 5 m from one frame to the next, or turns, or both. Hair does not
 //! move relative to its body, whether the clip is played at 24 frames per second or at 240. A continuous
-//! motion is never mistaken for a cut: hair moves as it does without teleports.
+//! motion is never mistaken for a cut: hair moves as it does without teleports. The same holds for a cut between
+//! two keys, at any time.
 
 use glam::{Quat, Vec3};
 use hairspring::{
-    body::{Body, Clip, Joint, Mesh, Skin, Trs},
+    body::{Body, Clip, Joint, KEYED_RATE, Key, Mesh, Skin, Trs, keyframe_clip},
     groom::Groom,
     math::RigidTransform,
     settings::Solver,
@@ -57,7 +58,7 @@ fn scene(pose: impl Fn(usize) -> Trs) -> Scene {
 /// The largest distance of any point from its authored place on the moving body [m].
 fn offset(stage: &Stage) -> f32 {
     let (anchor, strands) = (stage.body_anchor(), stage.strands().next().unwrap());
-    let local: Vec<Vec3> = strands.points.iter().map(|p| anchor.inverse_point(*p)).collect();
+    let local: Vec<Vec3> = strands.points.iter().map(|p| anchor.inverse_transform_point(*p)).collect();
     farthest(&local, &strands.groom.points)
 }
 
@@ -111,6 +112,34 @@ fn single_frame_and_resampled_cuts_are_detected() {
         resampled.clip = Some(Clip { name: "resampled".into(), rate: 60.0, joint_count: 1, samples });
         let offset = largest_offset(resampled, rate);
         assert!(offset < 1e-4, "resampled at {rate} Hz: {offset} m");
+    }
+}
+
+#[test]
+fn cuts_between_keys_carry_hair_at_any_time() {
+    let key = |time: f32, to: Trs| Key { time, position: to.translation, rotation: to.rotation };
+    for start in [0.5, 0.505, 0.51, 0.52] {
+        for length in [1.0 / 240.0, 1.0 / 60.0, 1.0 / 30.0, 0.04, 0.041, 1.0 / 24.0] {
+            for to in [moved(), turned()] {
+                let keys = [key(0.0, Trs::default()), key(start, Trs::default()), key(start + length, to)];
+                for rate in [24, 25, 30, 60, 240] {
+                    let mut scene = scene(|_| Trs::default());
+                    let distance = scene.solver.teleport_distance;
+                    scene.clip = Some(keyframe_clip(&keys, Vec3::ZERO, KEYED_RATE, distance));
+                    let mut stage = Stage::new(scene).unwrap();
+                    for frame in 0..rate * 3 / 4 {
+                        stage.step_frame(FrameRate::new(rate, 1).unwrap());
+                        let offset = offset(&stage);
+                        assert!(
+                            offset < 1e-4,
+                            "{start} + {length} s, frame {frame} at {rate} Hz: {offset} m"
+                        );
+                    }
+                    let end = keys[2].position;
+                    assert!(stage.body_anchor().translation.distance(end) < 1e-5, "{start} + {length} s");
+                }
+            }
+        }
     }
 }
 

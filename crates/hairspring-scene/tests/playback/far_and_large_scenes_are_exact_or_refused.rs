@@ -2,13 +2,13 @@
 //! one-sentence error.
 //!
 //! Hair at 100 m from the origin moves as it does at the origin. A scene is refused where single precision
-//! does not resolve its segments, or where lengths would overflow in a frame. Two grooms that are far apart
-//! share a volume with bounded memory.
+//! does not resolve its segments, at rest or where a clip moves them, and where lengths would overflow in a
+//! frame. Two grooms that are far apart share a volume with bounded memory.
 
 use crate::support::play;
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use hairspring::{
-    body::{Body, Clip, Mesh, Trs},
+    body::{Body, Clip, KEYED_RATE, Key, Mesh, Trs, keyframe_clip},
     groom::Groom,
     settings::{Effects, Solver, Volume, VolumeMethod},
 };
@@ -43,7 +43,10 @@ fn refused(scene: Scene) -> String {
     match Stage::new(scene) {
         Ok(_) => panic!("the scene was accepted"),
         Err(
-            error @ (StageError::TooFar { .. } | StageError::OutOfRange { .. } | StageError::Settings(_)),
+            error @ (StageError::TooFar { .. }
+            | StageError::MovedTooFar { .. }
+            | StageError::OutOfRange { .. }
+            | StageError::Settings(_)),
         ) => error.to_string(),
         Err(other) => panic!("{other}"),
     }
@@ -78,6 +81,30 @@ fn hair_too_far_from_the_origin_is_refused() {
 }
 
 #[test]
+fn a_clip_that_moves_hair_too_far_is_refused() {
+    let key = |time: f32, x: f32| Key { time, position: Vec3::X * x, rotation: Quat::IDENTITY };
+    let moved = |away: f32| Scene {
+        body: Some(Body::rigid(plate())),
+        clip: Some(keyframe_clip(&[key(0.0, 0.0), key(10.0, away)], Vec3::ZERO, KEYED_RATE, 1.0)),
+        ..scene(vec![groom(Vec3::ZERO, 0.005)])
+    };
+    let message = refused(moved(5e3));
+    assert!(message.starts_with("groom 0, in frame 600 of the clip 'keys': strand 0 is 5000"), "{message}");
+    assert!(message.contains("nearer to the origin"), "{message}");
+    assert!(Stage::new(moved(500.0)).is_ok());
+}
+
+fn plate() -> Mesh {
+    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
+    Mesh {
+        positions: corners.map(|(x, z)| Vec3::new(x, 0.0, z)).into(),
+        normals: vec![Vec3::Y; 4],
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        ..Mesh::default()
+    }
+}
+
+#[test]
 fn lengths_that_overflow_are_refused() {
     let huge = |groom: SceneGroom| {
         let points = groom.groom.points.iter().map(|p| *p * 1e25).collect();
@@ -96,16 +123,9 @@ fn lengths_that_overflow_are_refused() {
         let error = stage.update_settings(scene(vec![curled])).unwrap_err().to_string();
         assert!(error.starts_with("groom 0, effects: "), "{error}");
     }
-    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)];
-    let mesh = Mesh {
-        positions: corners.map(|(x, z)| Vec3::new(x, 0.0, z)).into(),
-        normals: vec![Vec3::Y; 4],
-        triangles: vec![[0, 1, 2], [0, 2, 3]],
-        ..Mesh::default()
-    };
     let away = Trs { translation: Vec3::Y * 1e30, ..Trs::default() };
     let mut moved = scene(vec![groom(Vec3::ZERO, 0.01)]);
-    moved.body = Some(Body::rigid(mesh));
+    moved.body = Some(Body::rigid(plate()));
     let samples = vec![Trs::default(), away];
     moved.clip = Some(Clip { name: "away".into(), rate: 30.0, joint_count: 1, samples });
     assert!(refused(moved).contains("a translation of the clip"));
@@ -114,14 +134,17 @@ fn lengths_that_overflow_are_refused() {
 #[test]
 fn a_volume_of_grooms_far_apart_is_bounded() {
     for method in [VolumeMethod::Density, VolumeMethod::Incompressible] {
-        for away in [200.0, 1000.0] {
-            let mut scene = scene(vec![groom(Vec3::ZERO, 0.007), groom(Vec3::X * away, 0.007)]);
+        for (away, frames) in
+            [(Vec3::X * 200.0, 10), (Vec3::X * 1000.0, 10), (Vec3::splat(30.0), 2), (Vec3::splat(900.0), 2)]
+        {
+            let mut scene = scene(vec![groom(Vec3::ZERO, 0.007), groom(away, 0.007)]);
             scene.volume = Volume { method, ..Volume::default() };
             let mut stage = Stage::new(scene).unwrap();
-            for _ in 0..10 {
+            assert!(stage.notes().iter().any(|note| note.contains("more than two million cells")));
+            for _ in 0..frames {
                 stage.step(FRAME);
                 let nodes = stage.volume().unwrap().nodes;
-                assert!(nodes <= 1 << 21, "{nodes} nodes at {away} m, {method:?}");
+                assert!(nodes <= 1 << 21, "{nodes} nodes at {away}, {method:?}");
             }
             assert!(stage.strands().flat_map(|s| s.points).all(|p| p.is_finite()));
         }

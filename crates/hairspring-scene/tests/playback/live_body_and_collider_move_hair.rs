@@ -36,10 +36,10 @@ fn roots_stay_on_a_body_moved_by_the_app() {
         here.step(FRAME);
         carried.step(FRAME);
         let (still, moved) = (roots(&here), roots(&carried));
-        let expected: Vec<Vec3> = still.iter().map(|root| motion(frame).point(*root)).collect();
+        let expected: Vec<Vec3> = still.iter().map(|root| motion(frame).transform_point(*root)).collect();
         let error = farthest(&expected, &moved);
         assert!(error < 2e-6, "frame {frame}: a root is {error} m from its place on the body");
-        let anchor = motion(frame).after(&here.body_anchor());
+        let anchor = motion(frame) * here.body_anchor();
         assert!(anchor.translation.distance(carried.body_anchor().translation) < 1e-6);
         // The head's distance field moves with the body.
         let end = carried.colliders()[0].end;
@@ -47,7 +47,7 @@ fn roots_stay_on_a_body_moved_by_the_app() {
     }
     // The motion has an effect: hair lags behind.
     let tips = |stage: &Stage| stage.strands().next().unwrap().points[31];
-    let lag = motion(29).point(tips(&here)).distance(tips(&carried));
+    let lag = motion(29).transform_point(tips(&here)).distance(tips(&carried));
     assert!(lag > 1e-3, "hair lags by only {lag} m");
     carried.reset();
     here.reset();

@@ -14,11 +14,12 @@ type Fault = (fn(&mut Scene), &'static str);
 
 #[test]
 fn every_part_of_a_scene_is_checked() {
-    let faults: [Fault; 8] = [
+    let faults: [Fault; 9] = [
         (|s| s.solver.substeps = 1025, "solver: `substeps` must be 1 to 1024"),
         (|s| s.wind.gust = -0.1, "wind: `gust` must be 0 to 1"),
-        (|s| s.volume.cell = Some(0.0), "volume: `cell` must be above 0 [m]"),
-        (|s| s.gravity = Vec3::NAN, "scene: `gravity` must be three finite numbers [m/s²]"),
+        (|s| s.volume.cell = Some(0.0), "volume: `cell` must be above 0, at most 1 [m]"),
+        (|s| s.volume.cell = Some(1e30), "volume: `cell` must be above 0, at most 1 [m]"),
+        (|s| s.gravity = Vec3::NAN, "scene: `gravity` must be three numbers from -10000 to 10000 [m/s²]"),
         (|s| s.grooms[1].look.shadow = 5.0, "groom 1, look: `shadow` must be 0 to 4"),
         (
             |s| {

@@ -38,6 +38,31 @@ fn the_box_holds_hair_that_turns_and_shakes() {
 }
 
 #[test]
+fn the_box_holds_long_hair_in_gusts_and_a_quick_turn() {
+    let options = BuiltinOptions { strands: 120, guides: Guides::All, ..BuiltinOptions::new(Style::Wavy) };
+    let mut made = scene(&options);
+    made.wind = Wind { velocity: Vec3::X * 1.5, gust: 0.6, gust_rate: 0.7 };
+    // It turns by 50° in 0.3 s.
+    let turned =
+        |degrees: f32| Trs { rotation: Quat::from_rotation_y(degrees.to_radians()), ..Trs::default() };
+    let eased = |k: usize| {
+        let t = ((k as f32 / 30.0 - 0.2) / 0.3).clamp(0.0, 1.0);
+        turned(50.0 * t * t * (3.0 - 2.0 * t))
+    };
+    made.body = made.body.map(|body| Body::rigid(body.mesh));
+    made.collision = None;
+    made.clip = Some(Clip {
+        name: "turn".into(),
+        rate: 30.0,
+        joint_count: 1,
+        samples: (0..=45).map(eased).collect(),
+    });
+    let mut stage = Stage::new(made).unwrap();
+    let share = outside(&mut stage, 46);
+    assert!(share < 2e-3, "{share} of all points are outside");
+}
+
+#[test]
 fn the_box_holds_the_head_and_not_the_whole_bust() {
     let options = BuiltinOptions { strands: 100, ..BuiltinOptions::new(Style::ShortFur) };
     let stage = Stage::new(scene(&options)).unwrap();

@@ -11,6 +11,7 @@ use crate::{
 };
 use glam::DVec3;
 use hairspring::material::Model;
+use std::f64::consts::TAU;
 
 pub const CASE: Case = Case {
     name: "bend-twist",
@@ -23,15 +24,21 @@ pub const CASE: Case = Case {
     quantities: &[Quantity { name: "threshold Γ*", tolerance: THRESHOLD }],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |method| match method {
-        Method { model: Model::Curvature, .. } => Some(NO_TWIST),
-        Method { model: Model::Springs, .. } => Some(
-            "at joints with large turns (0.13 to 0.24 rad at 64 points) the springs resist twist more than the fiber does; it passes at 192 points",
-        ),
-        Method { points: ..48, .. } => {
-            Some("at 32 points and κL = 15, a turn of the curl has only 13 segments")
+    min_points: 3,
+    enough_points: 64,
+    fails_with: &[Model::Curvature, Model::Springs],
+    reason: |values, method| {
+        let turn = values[0] / f64::from(method.points - 1);
+        let segments = TAU / turn;
+        match method.model {
+            Model::Curvature => Some(NO_TWIST.into()),
+            Model::Springs if turn < 0.08 => None,
+            Model::Springs => Some(format!(
+                "each joint turns by {turn:.2} rad at rest, where the springs resist twist more than the fiber does; at \
+                 0.08 rad they pass"
+            )),
+            _ => (segments < 20.0).then(|| format!("a turn of the curl has only {segments:.1} segments")),
         }
-        _ => None,
     },
     reference: |values| Ok(vec![curl_threshold(values[0], values[1]).ok_or(Failure::NoThreshold)?]),
     measure: |values, method| {

@@ -21,7 +21,10 @@ pub const CASE: Case = Case {
     ],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |_| None,
+    min_points: 4,
+    enough_points: 16,
+    fails_with: &[],
+    reason: |_, _| None,
     reference: |values| {
         let shape = catenary(values[0]);
         Ok(vec![shape.sag, shape.end_tension])

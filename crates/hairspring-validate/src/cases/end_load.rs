@@ -22,7 +22,10 @@ pub const CASE: Case = Case {
     ],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |_| None,
+    min_points: 3,
+    enough_points: 16,
+    fails_with: &[],
+    reason: |_, _| None,
     reference: |values| {
         let shape = cantilever(0.0, values[0]);
         Ok(vec![shape.tip_angle, shape.drop, 1.0 - shape.reach])

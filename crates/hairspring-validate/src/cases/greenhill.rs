@@ -18,7 +18,10 @@ pub const CASE: Case = Case {
     quantities: &[Quantity { name: "threshold Γ", tolerance: THRESHOLD }],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |_| None,
+    min_points: 3,
+    enough_points: 8,
+    fails_with: &[],
+    reason: |_, _| None,
     reference: |_| Ok(vec![greenhill()]),
     measure: |_, method| {
         let stiffness = |gamma| {

@@ -1,6 +1,6 @@
 //! A hanging chain swings in Bernoulli's modes.
 
-use super::{FREQUENCY, SPRINGS_ARE_BRAKED, USUAL};
+use super::{FREQUENCY, SPRINGS_ARE_BRAKED, USUAL, times_as_long};
 use crate::{
     Case, Method, Quantity,
     plot::Sweep,
@@ -24,11 +24,16 @@ pub const CASE: Case = Case {
     ],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |method| match method {
-        Method { model: Model::Springs, .. } => Some(SPRINGS_ARE_BRAKED),
-        Method { points: ..48, .. } => Some(
-            "the error of the third mode is proportional to the segment length; it passes from 64 points on",
-        ),
+    min_points: 3,
+    enough_points: 64,
+    fails_with: &[Model::Springs],
+    reason: |_, method| match method {
+        Method { points: ..64, .. } => Some(format!(
+            "the error of the third mode is proportional to the segment length: 2 % at 64 points, and here a segment is \
+             {:.1} times as long",
+            times_as_long(method)
+        )),
+        Method { model: Model::Springs, .. } => Some(SPRINGS_ARE_BRAKED.into()),
         _ => None,
     },
     reference: |_| Ok(chain::modes(3).into_iter().map(f64::sqrt).collect()),

@@ -2,7 +2,7 @@
 
 use super::{HAIR, STATIC, USUAL};
 use crate::{
-    Case, GAMMA, Method, Parameter, Quantity,
+    Case, GAMMA, Parameter, Quantity,
     plot::Sweep,
     reference::elastica::cantilever,
     specimen::{LENGTH, Setup, Specimen, straight},
@@ -22,9 +22,27 @@ pub const CASE: Case = Case {
     ],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |method| match method {
-        Method { model: Model::Springs, points: ..48, .. } => Some(BENT_FAR),
-        _ => None,
+    min_points: 3,
+    enough_points: 32,
+    fails_with: &[],
+    reason: |values, method| {
+        let (gamma, all) = (values[0], f64::from(method.points - 1));
+        let bent = gamma.cbrt().recip().min(1.0);
+        let segments = bent * all;
+        match method.model {
+            Model::Springs if method.points >= 128 => None,
+            _ if segments >= ENOUGH_IN_THE_BEND => None,
+            Model::Springs => Some(format!(
+                "at Γ = {gamma} and {} points, the strand bends within {bent:.2} of its length, in {segments:.1} segments; \
+                 springs are too soft at joints with so large turns",
+                method.points
+            )),
+            _ => Some(format!(
+                "at Γ = {gamma} and {} points, the strand bends within {bent:.2} of its length, in only {segments:.1} \
+                 segments",
+                method.points
+            )),
+        }
     },
     reference: |values| {
         let shape = cantilever(values[0], 0.0);
@@ -39,6 +57,5 @@ pub const CASE: Case = Case {
     sweep: Sweep::Parameter { index: 0, from: 0.3, to: 300.0, log: true },
 };
 
-/// Why the springs model does not pass with few points.
-const BENT_FAR: &str =
-    "at 32 points and Γ = 100, the joint at the clamp turns by 0.6 rad, where its springs are too soft";
+/// Number of segments in the part of the strand that bends, L Γ^(−1/3), from which the shape is resolved.
+const ENOUGH_IN_THE_BEND: f64 = 31.0;

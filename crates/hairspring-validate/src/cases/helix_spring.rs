@@ -26,12 +26,23 @@ pub const CASE: Case = Case {
     ],
     method: Method { points: 32, ..USUAL },
     points_fixed: false,
-    out_of_reach: |method| match method {
-        Method { model: Model::Curvature, .. } => Some(NO_TWIST),
-        Method { model: Model::Springs, points: ..48, .. } => {
-            Some("a truss with 8 segments per turn is stiffer than the curve that it represents")
+    min_points: 3,
+    enough_points: 32,
+    fails_with: &[Model::Curvature, Model::Springs],
+    reason: |values, method| {
+        let segments = f64::from(method.points - 1) / values[0];
+        match method.model {
+            Model::Curvature => Some(NO_TWIST.into()),
+            Model::Springs if segments < 16.0 => Some(format!(
+                "a truss with {segments:.1} segments a turn is stiffer than the curve that it represents"
+            )),
+            _ => (segments < 8.0).then(|| {
+                format!(
+                    "a turn has only {segments:.1} segments, so each joint turns by {:.2} rad; with 8 segments it passes",
+                    TAU / segments
+                )
+            }),
         }
-        _ => None,
     },
     reference: |_| Ok(vec![1.0; 3]),
     measure: |values, method| {

@@ -17,7 +17,10 @@ pub const CASE: Case = Case {
     quantities: &[Quantity { name: "tan θ at which it slips", tolerance: FRICTION }],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |_| None,
+    min_points: 3,
+    enough_points: 3,
+    fails_with: &[],
+    reason: |_, _| None,
     reference: |values| Ok(vec![values[0]]),
     measure: |values, method| {
         let mu = values[0];

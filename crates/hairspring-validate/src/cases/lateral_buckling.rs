@@ -1,7 +1,7 @@
 //! A flat strand, clamped horizontally on its edge, buckles laterally under its own weight or under a load at
 //! its tip.
 
-use super::{HAIR, HELD_BACK, NO_TWIST, THRESHOLD, USUAL};
+use super::{HAIR, HELD_BACK, NO_TWIST, THRESHOLD, USUAL, times_as_long};
 use crate::{
     Case, Failure, GJ_OVER_EI, Method, Parameter, Quantity,
     plot::Sweep,
@@ -24,12 +24,16 @@ pub const CASE: Case = Case {
     ],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |method| match method {
-        Method { model: Model::Curvature, .. } => Some(NO_TWIST),
-        Method { model: Model::Springs, points: 80.., .. } => Some(HELD_BACK),
-        Method { points: ..48, .. } => {
-            Some("the error is proportional to the segment length: 2.4 % at 64 points")
-        }
+    min_points: 3,
+    enough_points: 64,
+    fails_with: &[Model::Curvature],
+    reason: |_, method| match method {
+        Method { model: Model::Curvature, .. } => Some(NO_TWIST.into()),
+        Method { model: Model::Springs, points: 80.., .. } => Some(HELD_BACK.into()),
+        Method { points: ..64, .. } => Some(format!(
+            "the error is proportional to the segment length: 2.4 % at 64 points, and here a segment is {:.1} times as long",
+            times_as_long(method)
+        )),
         _ => None,
     },
     reference: |values| {

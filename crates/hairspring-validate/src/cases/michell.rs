@@ -20,19 +20,31 @@ pub const CASE: Case = Case {
     quantities: &[Quantity { name: "total twist Φ [rad]", tolerance: THRESHOLD }],
     method: TWISTED,
     points_fixed: false,
-    out_of_reach: |method| {
+    min_points: 6,
+    enough_points: 64,
+    fails_with: &[Model::Curvature, Model::Springs, Model::Auto],
+    reason: |values, method| {
         match method.model {
-        Model::Curvature => Some(NO_TWIST),
+        Model::Curvature => Some(NO_TWIST.into()),
         Model::Springs => Some(
-            "a ring of round fiber rotates about its clamped tangent without energy; the joints of a truss have preferred bending directions, and the ring rotates to them",
+            "a ring of round fiber rotates about its clamped tangent without energy; the joints of a truss have preferred \
+             bending directions, and the ring rotates to them"
+                .into(),
         ),
         Model::Auto => Some(
-            "for a strand that is straight at rest, auto selects the curvature model, which has no twist",
+            "for a strand that is straight at rest, auto selects the curvature model, which has no twist".into(),
         ),
         // The rod.
-        _ => (method.points < 48).then_some(
-            "at 32 points each joint of the ring turns by 0.2 rad and twists by 0.8 rad, too much for the twist measure",
-        ),
+        _ => {
+            let joints = f64::from(method.points - 1);
+            let (turn, twist) = (TAU / joints, writhing_twist(values[0]) / joints);
+            (twist > LARGEST_TWIST).then(|| {
+                format!(
+                    "each joint of the ring turns by {turn:.2} rad and twists by {twist:.2} rad, too much for the twist \
+                     measure"
+                )
+            })
+        }
     }
     },
     reference: |values| Ok(vec![writhing_twist(values[0])]),
@@ -44,6 +56,9 @@ pub const CASE: Case = Case {
     },
     sweep: Sweep::Parameter { index: 0, from: 0.35, to: 1.4, log: false },
 };
+
+/// Twist of a joint that the twist measure represents [rad]: 64 points with that of human hair pass.
+const LARGEST_TWIST: f64 = 0.4;
 
 /// Frames in which the strand is bent to a ring.
 const BENDING_FRAMES: u32 = 240;

@@ -46,6 +46,11 @@ const FRICTION: f64 = 0.03;
 /// Tolerance of angles in the wind: relative error.
 const AIR: f64 = 0.03;
 
+/// Returns how many times as long a segment is as one of 64 points.
+fn times_as_long(method: &Method) -> f64 {
+    63.0 / f64::from(method.points - 1)
+}
+
 /// Why the springs model does not pass where joints are stiff and short.
 pub(super) const HELD_BACK: &str = "the springs model is solved in single precision, which cannot represent the fiber's joint stiffness at this number of points";
 

@@ -22,9 +22,15 @@ pub const CASE: Case = Case {
     ],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |method| {
-        (method.model == Model::Springs)
-            .then_some("the joints of a truss have preferred bending directions, and the bent strand rotates about its axis to them for minutes")
+    min_points: 3,
+    enough_points: 16,
+    fails_with: &[Model::Springs],
+    reason: |_, method| {
+        (method.model == Model::Springs && method.points >= 16).then(|| {
+            "the joints of a truss have preferred bending directions, and the bent strand rotates about its axis to them for \
+             minutes"
+                .into()
+        })
     },
     reference: |values| {
         let shape = column(values[0]);

@@ -15,10 +15,23 @@ pub const CASE: Case = Case {
     about: "A strand that falls on a thin rod stays over it, and touches it.",
     parameters: &[Parameter { symbol: &ROD_RADIUS_MM, range: (0.25, 10.0) }],
     defaults: &[&[1.0]],
-    quantities: &[Quantity { name: "distance from the axis over the radius", tolerance: 0.1 }],
+    quantities: &[Quantity { name: "distance from the axis over the radius", tolerance: DEEPEST }],
     method: USUAL,
     points_fixed: false,
-    out_of_reach: |_| None,
+    min_points: 3,
+    enough_points: 32,
+    fails_with: &[],
+    reason: |values, method| {
+        let segment = 1e3 * LENGTH / f64::from(method.points - 1);
+        let cut = CORNER * segment / values[0];
+        (cut > DEEPEST).then(|| {
+            format!(
+                "a segment of {segment:.1} mm may cut a corner by {} % of its length, {:.0} % of the radius",
+                100.0 * CORNER,
+                100.0 * cut
+            )
+        })
+    },
     reference: |_| Ok(vec![1.0]),
     measure: |values, method| {
         let distances: Result<Vec<f64>, Failure> =
@@ -28,6 +41,12 @@ pub const CASE: Case = Case {
     },
     sweep: Sweep::Parameter { index: 0, from: 0.5, to: 5.0, log: true },
 };
+
+/// Largest depth in the rod, over its radius [1].
+const DEEPEST: f64 = 0.1;
+
+/// Depth to which a segment may cut a corner of a collider, over its length [1].
+const CORNER: f64 = 0.015;
 
 /// Initial height of the strand above the rod [m].
 const FALLS: [f64; 3] = [0.002, 0.005, 0.01];

@@ -1,7 +1,7 @@
-//! Draws a strand that stands for several hairs as several hairs next to each other, each with its own path
+//! Draws a strand that represents several hairs as several hairs next to each other, each with its own path
 //! and brightness.
 //!
-//! A strand that stands for eight could be drawn eight times as wide, but would then look like a ribbon. A
+//! A strand that represents eight could be drawn eight times as wide, but would then look like a ribbon. A
 //! wisp (Watanabe & Suenaga 1992, "A Trigonal Prism-Based Method for Hair Image Generation") of thinner hairs
 //! covers the same area and looks like hair. Projection, shading and sorting are done once per strand; only
 //! blending is done for each hair. Everything happens in screen space, so the hairs of a wisp have the same

@@ -9,7 +9,7 @@ use std::f32::consts::TAU;
 
 /// Ratio of the second sine's rate to the first's: the square of the golden ratio, which is hard to
 /// approximate by a fraction.
-const SECOND: f32 = 2.618;
+const RATE_RATIO: f32 = 2.618;
 
 /// The gusts of one wind source.
 #[derive(Clone, Copy)]
@@ -23,21 +23,28 @@ pub(super) struct Gust {
 }
 
 impl Gust {
+    /// Returns whether there are gusts. Without a rate, there are none.
+    fn is_on(&self) -> bool {
+        self.rate > 0.0
+    }
+
     /// Returns the wind speed at `time` [s] relative to the mean [1].
     pub fn factor(&self, time: f64) -> f32 {
+        if !self.is_on() {
+            return 1.0;
+        }
         let phase = f64::from(TAU * self.rate) * time + f64::from(self.phase);
-        let gust = 0.6 * phase.sin() + 0.4 * (phase * f64::from(SECOND) + 1.0).sin();
+        let gust = 0.6 * phase.sin() + 0.4 * (phase * f64::from(RATE_RATIO) + 1.0).sin();
         1.0 + self.amount * gust as f32
     }
 
-    /// Returns the integral of [`Gust::factor`] from 0 to `time` [s]: how long the mean wind takes to travel
-    /// the same distance.
-    pub fn travelled(&self, time: f64) -> f64 {
-        let omega = f64::from(TAU * self.rate);
-        if omega == 0.0 {
-            return time * f64::from(self.factor(0.0));
+    /// Returns ∫₀ᵗ factor dt [s]. Multiplied by the mean wind, this is the distance that the air has traveled.
+    pub fn integral(&self, time: f64) -> f64 {
+        if !self.is_on() {
+            return time;
         }
-        let (first, second) = (f64::from(self.phase), f64::from(SECOND));
+        let omega = f64::from(TAU * self.rate);
+        let (first, second) = (f64::from(self.phase), f64::from(RATE_RATIO));
         let still = |phase: f64| 0.6 * phase.cos() + 0.4 / second * (phase * second + 1.0).cos();
         time - f64::from(self.amount) * (still(first + omega * time) - still(first)) / omega
     }
@@ -48,18 +55,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_way_is_the_sum_of_the_gusts() {
+    fn without_a_rate_the_wind_keeps_its_mean() {
+        for phase in [0.0, 2.4] {
+            let gust = Gust { amount: 1.0, rate: 0.0, phase };
+            for time in [0.0, 0.3, 100.0] {
+                assert_eq!((gust.factor(time), gust.integral(time)), (1.0, time));
+            }
+        }
+    }
+
+    #[test]
+    fn the_integral_is_the_sum_of_the_gusts() {
         for rate in [0.0, 0.3, 2.0] {
             let gust = Gust { amount: 0.7, rate, phase: 0.4 };
             let steps = 20_000;
             let at = |k: usize| (k as f64 + 0.5) * 3.0 / steps as f64;
             let sum: f64 =
                 (0..steps).map(|k| f64::from(gust.factor(at(k)))).sum::<f64>() * 3.0 / steps as f64;
-            assert!(
-                (gust.travelled(3.0) - sum).abs() < 1e-4,
-                "{} by {sum} at {rate} Hz",
-                gust.travelled(3.0)
-            );
+            let integral = gust.integral(3.0);
+            assert!((integral - sum).abs() < 1e-4, "{integral} instead of {sum} at {rate} Hz");
         }
     }
 }

@@ -52,11 +52,12 @@ use gust::Gust;
 /// The air during a frame. The default is still air.
 ///
 /// For an example, see [`air`](crate::air).
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Air<'a> {
     /// The directional wind, the same everywhere.
     pub wind: Wind,
-    /// Time at the start of the frame [s].
+    /// Time at the start of the frame [s]. Gusts and eddies change with it, so the caller advances it by the
+    /// length of each frame.
     pub time: f64,
     /// Wind sources, at their poses in this frame.
     pub sources: &'a [Source],
@@ -79,15 +80,20 @@ impl Air<'_> {
         !self.sources.is_empty() || self.turbulence.is_on()
     }
 
+    /// Returns whether there is a directional wind or a wind source. Wind occlusion follows these only.
+    pub(crate) fn steady_moves(&self) -> bool {
+        !self.sources.is_empty() || self.wind.velocity != Vec3::ZERO
+    }
+
     /// Returns whether the air moves at all.
     pub(crate) fn moves(&self) -> bool {
-        self.varies() || self.wind.velocity != Vec3::ZERO
+        self.steady_moves() || self.turbulence.is_on()
     }
 
     /// Samples the air at the middle of a frame of `dt` [s]. `noise` is reused as storage.
     pub(crate) fn moment<'a>(&'a self, dt: f32, noise: &'a mut Noise) -> AirSample<'a> {
         let middle = self.time + 0.5 * f64::from(dt);
-        let way = self.wind.velocity.as_dvec3() * self.gust().travelled(middle);
+        let way = self.wind.velocity.as_dvec3() * self.gust().integral(middle);
         let noise = self.turbulence.is_on().then(|| {
             noise.set(&self.turbulence, way, middle);
             &*noise

@@ -22,9 +22,9 @@ use crate::settings::{When, define_settings};
 use crate::{collide::FrameColliders, volume::Density};
 use glam::Vec3;
 
-/// The condition under which the air moves.
-const BLOWS: When =
-    When::Any(&[When::Not0("wind.velocity"), When::Above0("turbulence.strength"), When::Has("wind_source")]);
+/// The condition under which occlusion has an effect. It follows the steady wind: turbulence alone has no
+/// direction from which a body could shelter hair.
+const WIND_BLOWS: When = When::Any(&[When::Not0("wind.velocity"), When::Has("wind_source")]);
 
 define_settings! {
     /// Occlusion of the wind by bodies and hair.
@@ -43,15 +43,15 @@ define_settings! {
     pub struct WindOcclusion {
         /// Attenuation of the wind inside a body, β. 0: bodies do not block the wind. With 100, the wind falls to
         /// 1/e within one centimeter.
-        body: f32 = 0.0, ["1/m"], {0 or more}, when BLOWS;
+        body: f32 = 0.0, ["1/m"], {0 or more}, when WIND_BLOWS;
         /// Attenuation of the wind in hair that is as dense as at rest, η. 0: hair does not block the wind. With
         /// 50, the wind falls to 1/e within two centimeters.
         ///
-        /// The guides of a groom represent all of its hair, so even a single strand counts as dense hair.
-        hair: f32 = 0.0, ["1/m"], {0 or more}, when BLOWS;
+        /// Density is relative to the groom at rest, so a single strand occludes like dense hair.
+        hair: f32 = 0.0, ["1/m"], {0 or more}, when WIND_BLOWS;
         /// Distance behind an occluder at which the wind has recovered. The default is about three head lengths.
         reach: f32 = 0.5, ["m"], {above 0}, when When::All(&[
-            BLOWS,
+            WIND_BLOWS,
             When::Any(&[When::Above0("wind_occlusion.body"), When::Above0("wind_occlusion.hair")]),
         ]);
     }
@@ -68,10 +68,10 @@ impl WindOcclusion {
 const MAX_STEPS: usize = 256;
 
 /// Optical depth at which the ray stops because no wind is left.
-const DEEP: f32 = 8.0;
+const MAX_OPTICAL_DEPTH: f32 = 8.0;
 
 /// Speed below which the air counts as still, relative to the speed at the start of the ray [1].
-const CALM: f32 = 0.05;
+const MIN_RELATIVE_SPEED: f32 = 0.05;
 
 /// T at the grid nodes that are near hair.
 #[derive(Default)]
@@ -125,12 +125,12 @@ fn depth(
     from: Vec3,
 ) -> f32 {
     let (mut at, mut way, mut depth) = (from, 0.0, 0.0);
-    let calm = CALM * air.steady(from).length();
+    let calm = MIN_RELATIVE_SPEED * air.steady(from).length();
     for _ in 0..MAX_STEPS {
         let wind = air.steady(at);
         let speed = wind.length();
         // Written so that a NaN ends the loop.
-        let goes_on = speed > calm && way < occlusion.reach && depth < DEEP;
+        let goes_on = speed > calm && way < occlusion.reach && depth < MAX_OPTICAL_DEPTH;
         if !goes_on {
             break;
         }

@@ -33,7 +33,7 @@ define_settings! {
         gust: f32 = 0.0, "fraction", {0 to 1};
         /// Number of gusts of this source per second. Every source has its own gust phase.
         #[serde(default)]
-        gust_rate: f32 = 0.0, ["Hz"], {0 or more};
+        gust_rate: f32 = 0.0, ["Hz"], {0 to 1000};
     }
 }
 
@@ -43,8 +43,7 @@ impl WindSource {
     pub fn at_time(&self, number: usize, pose: RigidTransform, time: f64) -> Source {
         // Multiples of the golden angle, so that all phases differ.
         let gust = Gust { amount: self.gust, rate: self.gust_rate, phase: 2.4 * (number + 1) as f32 };
-        let factor = if self.gust_rate > 0.0 { gust.factor(time) } else { 1.0 };
-        Source { flow: self.shape, pose, factor }
+        Source { flow: self.shape, pose, factor: gust.factor(time) }
     }
 }
 
@@ -58,33 +57,33 @@ define_settings! {
         /// Flow out of a ball in all directions, or into it.
         Point = "point" {
             /// Center of the ball.
-            center: Vec3, ["m"], {vector};
+            center: Vec3, ["m"], {vector -1000000 to 1000000};
             /// Radius of the ball, R.
             radius: f32, ["m"], {above 0};
             /// Speed of the air at the surface of the ball, U. Negative: inward.
-            speed: f32, ["m/s"], {finite};
+            speed: f32, ["m/s"], {-1000 to 1000};
         }
         /// Rotation about an infinite axis.
         Vortex = "vortex" {
             /// A point on the axis.
-            center: Vec3, ["m"], {vector};
+            center: Vec3, ["m"], {vector -1000000 to 1000000};
             /// Direction of the axis. The rotation follows the right-hand rule.
             axis: Vec3, "direction", {direction};
             /// Distance from the axis at which the flow is fastest, R.
             radius: f32, ["m"], {above 0};
             /// Speed of the air at that distance, U.
-            speed: f32, ["m/s"], {finite};
+            speed: f32, ["m/s"], {-1000 to 1000};
         }
         /// A jet from a round opening.
         Fan = "fan" {
             /// Center of the opening.
-            center: Vec3, ["m"], {vector};
+            center: Vec3, ["m"], {vector -1000000 to 1000000};
             /// Direction of the jet.
             axis: Vec3, "direction", {direction};
             /// Radius of the opening, R.
             radius: f32, ["m"], {above 0};
             /// Speed of the air at the opening, U.
-            speed: f32, ["m/s"], {finite};
+            speed: f32, ["m/s"], {-1000 to 1000};
             /// Half-angle of the jet's cone, between its axis and its edge. The default is the angle of every free
             /// turbulent jet: its radius grows by a fifth of the distance (Pope 2000, §5.1).
             #[serde(default = "free_jet")]
@@ -99,7 +98,7 @@ fn free_jet() -> f32 {
 }
 
 /// Lower bound of a radius [m].
-const LEAST: f32 = 1e-6;
+const MIN_RADIUS: f32 = 1e-6;
 
 impl Flow {
     /// Returns the velocity of the air at `p` [m/s].
@@ -107,13 +106,13 @@ impl Flow {
         match *self {
             Self::Point { center, radius, speed } => {
                 let d = p - center;
-                let radius = radius.max(LEAST);
+                let radius = radius.max(MIN_RADIUS);
                 let far = d.length().max(radius) / radius;
                 d * (speed / (radius * far * far * far))
             }
             Self::Vortex { center, axis, radius, speed } => {
                 let axis = axis.normalize_or_zero();
-                let around = axis.cross(p - center) / radius.max(LEAST);
+                let around = axis.cross(p - center) / radius.max(MIN_RADIUS);
                 around * (2.0 * speed / (1.0 + around.length_squared()))
             }
             Self::Fan { center, axis, radius, speed, spread } => {
@@ -123,7 +122,7 @@ impl Flow {
                 if along < 0.0 {
                     return Vec3::ZERO;
                 }
-                let radius = radius.max(LEAST);
+                let radius = radius.max(MIN_RADIUS);
                 let width = radius + along * spread.to_radians().tan();
                 let across = (d - axis * along).length_squared() / (width * width);
                 axis * (speed * (2.0 * radius / width * (-2.0 * across).exp()).min(1.0))
@@ -148,7 +147,7 @@ pub struct Source {
 impl Source {
     /// Returns the velocity of the air at `place` in world space [m/s].
     pub fn velocity(&self, place: Vec3) -> Vec3 {
-        self.pose.rotation * (self.flow.velocity(self.pose.inverse_point(place)) * self.factor)
+        self.pose.rotation * (self.flow.velocity(self.pose.inverse_transform_point(place)) * self.factor)
     }
 }
 

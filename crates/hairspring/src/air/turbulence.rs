@@ -19,8 +19,14 @@
 use crate::settings::{When, define_settings};
 use glam::{DVec3, IVec3, Mat3, Vec3};
 
+/// Largest number of octaves, as in the range of [`Turbulence::octaves`].
+const MAX_OCTAVES: u32 = 6;
+
+/// Smallest eddy size [m].
+const MIN_SIZE: f32 = 1e-6;
+
 /// The condition under which the shape of the eddies has an effect.
-const BLOWS: When = When::Above0("turbulence.strength");
+const IS_TURBULENT: When = When::Above0("turbulence.strength");
 
 define_settings! {
     /// Parameters of the turbulence.
@@ -35,13 +41,13 @@ define_settings! {
     pub struct Turbulence {
         /// Root mean square of the turbulent velocity. 0: none. Outdoors it is a tenth to a third of the wind
         /// speed.
-        strength: f32 = 0.0, ["m/s"], {0 or more};
+        strength: f32 = 0.0, ["m/s"], {0 to 1000};
         /// Size of the largest eddies. The default is half a head, so that it moves whole locks rather than single
         /// hairs.
-        size: f32 = 0.1, ["m"], {above 0}, when BLOWS;
+        size: f32 = 0.1, ["m"], {1e-6 to 1000000}, when IS_TURBULENT;
         /// Number of octaves: eddy sizes, each half as large as the one before. With the default, further octaves
         /// would be smaller than a lock.
-        octaves: u32 = 2, "sizes", {1 to 6}, when BLOWS;
+        octaves: u32 = 2, "sizes", {1 to 6}, when IS_TURBULENT;
     }
 }
 
@@ -90,12 +96,12 @@ impl Noise {
     pub fn set(&mut self, settings: &Turbulence, way: DVec3, time: f64) {
         self.octaves.clear();
         self.corners.clear();
-        let octaves = settings.octaves.clamp(1, 6);
+        let octaves = settings.octaves.clamp(1, MAX_OCTAVES);
         // Kolmogorov spectrum: u² is proportional to ℓ^(2/3).
         let share = |k: u32| 2f32.powf(-2.0 / 3.0 * k as f32);
         let all: f32 = (0..octaves).map(share).sum();
         for k in 0..octaves {
-            let size = settings.size.max(1e-6) / (1 << k) as f32;
+            let size = settings.size.max(MIN_SIZE) / (1 << k) as f32;
             let speed = settings.strength * (share(k) / all).sqrt();
             let cells = way / f64::from(size);
             let period = DVec3::splat(PERIOD as f64);
@@ -177,6 +183,12 @@ mod tests {
             let [x, y, z] = [3 * k, 3 * k + 1, 3 * k + 2].map(|n| scatter(n) as f32 / u32::MAX as f32);
             Vec3::new(x, y, z) * 8.0 - 4.0
         })
+    }
+
+    #[test]
+    fn octaves_are_limited_as_their_range_says() {
+        let octaves = Turbulence::PARAMETERS.iter().find(|p| p.name == "octaves").map(|p| p.range.bounds());
+        assert_eq!(octaves, Some(Some((1.0, MAX_OCTAVES as f32))));
     }
 
     #[test]

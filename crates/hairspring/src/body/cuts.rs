@@ -7,7 +7,8 @@
 //!            └──────────────────► time
 //! ```
 //!
-//! Cuts are found in the frames of the clip, so they do not depend on the playback rate. Connected joints
+//! Cuts are found in the frames of the clip, so they do not depend on the playback rate. The frames of a keyed
+//! motion have the cuts that are found in its keys, see `keyed.rs`. Connected joints
 //! share their cuts. These are found in the motion of one joint: the one that carries the hair, or the
 //! topmost.
 
@@ -17,19 +18,19 @@ use glam::{Affine3A, Quat, Vec3};
 
 /// Frame time for which the threshold is the teleport distance [s]. For longer intervals the threshold grows
 /// in proportion, since real motion goes farther.
-const REFERENCE: f64 = 1.0 / 24.0;
+const TELEPORT_FRAME: f64 = 1.0 / 24.0;
 
-/// Rotation in excess of the prediction that counts as a teleport within [`REFERENCE`] [rad].
+/// Rotation in excess of the prediction that counts as a teleport within [`TELEPORT_FRAME`] [rad].
 const TELEPORT_ANGLE: f32 = std::f32::consts::FRAC_PI_2;
 
 /// Smallest motion next to a cut that is counted as part of it, as a fraction of the teleport distance [1].
-const REST: f32 = 0.05;
+const MIN_CUT_MOTION: f32 = 0.05;
 
 /// Returns whether a deviation from the predicted pose after `dt` [s] is too large for real motion. `off` is
 /// the deviation in position [m], `turned` that in rotation [rad], and `distance` [m] the teleport distance
 /// for one frame at 24 Hz.
 pub(crate) fn is_teleport(off: f32, turned: f32, distance: f32, dt: f64) -> bool {
-    let longer = (dt / REFERENCE).max(1.0) as f32;
+    let longer = (dt / TELEPORT_FRAME).max(1.0) as f32;
     off > distance * longer || turned > TELEPORT_ANGLE * longer
 }
 
@@ -122,7 +123,7 @@ impl Cuts {
                 moved.resize(self.tree_of.len(), None);
                 for joint in (0..self.tree_of.len()).filter(|joint| self.tree_of[*joint] == number) {
                     let by = step(&old[joint], &new[joint]);
-                    moved[joint] = Some(moved[joint].map_or(by, |before| by.after(&before)));
+                    moved[joint] = Some(moved[joint].map_or(by, |before| by * before));
                 }
             }
         }
@@ -140,7 +141,7 @@ impl Tree {
 
 /// Returns the rigid motion between two matrices of a joint.
 fn step(from: &Affine3A, to: &Affine3A) -> RigidTransform {
-    RigidTransform::from_affine(to).after(&RigidTransform::from_affine(from).inverse())
+    RigidTransform::from_affine(to) * RigidTransform::from_affine(from).inverse()
 }
 
 /// Returns the world transform of a joint in a pose.
@@ -186,24 +187,35 @@ pub(super) fn find(path: &[RigidTransform], rate: f64, distance: f32) -> Vec<(us
         })
     };
     // Resampling a cut between two 24 Hz keys spreads it over up to this many frame intervals.
-    let longest = ((rate * REFERENCE).ceil() as usize).saturating_add(1).min(intervals);
+    let longest = ((rate * TELEPORT_FRAME).ceil() as usize).saturating_add(1).min(intervals);
     // If the keys lie between frames, the cut touches one more interval.
     let widest = longest + 1;
     // A frame interval next to a cut belongs to it if it moves in the same direction and faster than its
-    // other neighbor.
-    let is_rest = |interval: usize, neighbour: Pace, step: Vec3| {
+    // other neighbor. The first and the last interval of the clip have none: they are compared with rest and with
+    // the motion on the other side of the cut.
+    let earlier = |interval: usize, to: usize| match interval {
+        0 => [Pace::default(), after(to)],
+        _ => [pace(interval - 1); 2],
+    };
+    let later = |interval: usize, from: usize| match interval + 1 == intervals {
+        true => [Pace::default(), before(from)],
+        false => [pace(interval + 1); 2],
+    };
+    let is_rest = |interval: usize, neighbours: [Pace; 2], step: Vec3| {
         let own = pace(interval);
-        let off = own.velocity - neighbour.velocity;
-        off.dot(step) > REST * distance * step.length()
-            || own.spin.distance(neighbour.spin) > REST * TELEPORT_ANGLE
+        neighbours.into_iter().all(|neighbour| {
+            let off = own.velocity - neighbour.velocity;
+            off.dot(step) > MIN_CUT_MOTION * distance * step.length()
+                || own.spin.distance(neighbour.spin) > MIN_CUT_MOTION * TELEPORT_ANGLE
+        })
     };
     let widen = |(mut from, mut to): (usize, usize), others: &[(usize, usize)]| {
         let free = |interval: usize| others.iter().all(|(a, b)| interval < *a || interval >= *b);
         while to - from < widest {
             let step = path[to].translation - path[from].translation;
-            if from > 1 && free(from - 1) && is_rest(from - 1, pace(from - 2), step) {
+            if from > 0 && free(from - 1) && is_rest(from - 1, earlier(from - 1, to), step) {
                 from -= 1;
-            } else if to + 1 < intervals && free(to) && is_rest(to, pace(to + 1), step) {
+            } else if to < intervals && free(to) && is_rest(to, later(to, from), step) {
                 to += 1;
             } else {
                 break;
@@ -254,6 +266,9 @@ mod tests {
         // Keys between frames: the remainders of the cut before and after the middle interval are part of it.
         assert_eq!(cut(&[0.0, 0.0, 0.6, 4.6, 5.0, 5.0], 30.0), [(1, 4)]);
         assert_eq!(cut(&[0.0, 0.1, 0.2, 4.3, 5.2, 5.3, 5.4], 30.0), [(2, 4)]);
+        // The remainder of a cut at the end and at the start of the clip.
+        assert_eq!(cut(&[0.0, 0.0, 1.6, 4.7, 5.0], 60.0), [(1, 4)]);
+        assert_eq!(cut(&[0.0, 0.5, 3.0, 5.0, 5.0], 60.0), [(0, 3)]);
         // A run that continues after a cut.
         assert_eq!(cut(&[0.0, 0.0, 5.0, 5.1, 5.2, 5.3], 30.0), [(1, 2)]);
         // Running, falling, and a ride that starts abruptly.

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 /// Largest number of triangles in a leaf: testing a handful of triangles costs less than another level of the
 /// tree.
-const LEAF: usize = 4;
+const MAX_TRIANGLES_PER_LEAF: usize = 4;
 
 /// A point on a triangle, with its distance from the query point.
 ///
@@ -37,6 +37,12 @@ pub struct NearestTree<'a> {
     nodes: Vec<Node>,
     /// Triangle indices, grouped by leaf.
     triangles: Vec<u32>,
+}
+
+impl std::fmt::Debug for NearestTree<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("NearestTree").field("triangles", &self.triangles.len()).finish_non_exhaustive()
+    }
 }
 
 struct Node {
@@ -72,7 +78,7 @@ impl<'a> NearestTree<'a> {
             corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
         let index = self.nodes.len();
         self.nodes.push(Node { lo, hi, first: first as u32, count: count as u32, second: 0 });
-        if count <= LEAF {
+        if count <= MAX_TRIANGLES_PER_LEAF {
             return;
         }
         let axis = (hi - lo).max_position();

@@ -1,6 +1,9 @@
 //! Retargeting of motion to another skeleton: a captured head onto a bust, or a clip onto a rig with the same
 //! joint names.
 
+mod usual_height;
+
+use self::usual_height::{HEIGHT_SAMPLES, usual_height};
 use super::{Body, Clip, Joint, Trs, cuts};
 use crate::{math::RigidTransform, settings::Solver};
 use glam::{Affine3A, Quat, Vec3};
@@ -10,6 +13,7 @@ use std::collections::BTreeMap;
 ///
 /// For an example, see [`head_motion`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Travel {
     /// All of it: the bust walks away with the capture.
     Keep,
@@ -155,6 +159,9 @@ pub struct Retargeted {
     /// Whether both rigs have a joint near the floor, so that the motion also gives the body's height above
     /// it. Otherwise the body starts at its own place.
     pub on_floor: bool,
+    /// Height of the first frame above most others [units of the motion], if it does not decide the height of the
+    /// body: a rest pose at the origin, a jump or a crouch. `None` if the body is placed by the first frame.
+    pub first_frame_height: Option<f32>,
 }
 
 /// Retargets a clip to the joints of `body` that have the same names. Case, punctuation, a prefix before a
@@ -169,6 +176,9 @@ pub struct Retargeted {
 /// (a foot), its translation is scaled by the ratio of the hip heights, and the feet are on the same floor.
 /// Otherwise it starts at the body's own place, and its translation is scaled by the ratio of the lengths of
 /// the bones that both rigs have.
+///
+/// The first frame gives the height of the floor, or of the body's own place. If few frames have its height and
+/// most have another one, the height of these is used.
 ///
 /// ```
 /// use hairspring::body::{Body, Clip, Joint, Mesh, Trs, retarget};
@@ -196,10 +206,20 @@ pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted
     let ratio = floors.unwrap_or_else(|| bone_ratio(body, &map, &target_rest, &source_rest));
     let (mut origin, mut place) =
         (Vec3::from(first[source_root].translation), Vec3::from(target_rest[root].translation));
+    // The height of a frame: of its floor, or of the joint that carries the body.
+    let height = |world: &[Affine3A]| match floors {
+        Some(_) => lowest(map.iter().flatten().map(|s| &world[*s])),
+        None => world[source_root].translation.y,
+    };
+    origin.y = height(&first);
     if floors.is_some() {
-        origin.y = lowest(map.iter().flatten().map(|s| &first[*s]));
         place.y = lowest(driven(&map).map(|j| &target_rest[j]));
     }
+    let step = clip.frame_count().div_ceil(HEIGHT_SAMPLES);
+    let heights: Vec<f32> = (0..clip.frame_count()).step_by(step).map(|f| height(&frame(f))).collect();
+    let usual = usual_height(&heights, &source_rest);
+    let first_frame_height = usual.map(|usual| origin.y - usual);
+    origin.y = usual.unwrap_or(origin.y);
     let rest_pose = body.rest_pose();
     let mut samples = Vec::with_capacity(clip.frame_count() * body.joints.len());
     for f in 0..clip.frame_count() {
@@ -224,7 +244,8 @@ pub fn retarget(joints: &[Joint], clip: &Clip, body: &Body) -> Option<Retargeted
     let used = |s: usize| map.contains(&Some(s));
     let unmatched = (0..joints.len()).filter(|s| !used(*s)).map(|s| joints[s].name.clone()).collect();
     let clip = Clip { name: clip.name.clone(), rate: clip.rate, joint_count: body.joints.len(), samples };
-    Some(Retargeted { clip, matched, unmatched, scale: ratio, on_floor: floors.is_some() })
+    let on_floor = floors.is_some();
+    Some(Retargeted { clip, matched, unmatched, scale: ratio, on_floor, first_frame_height })
 }
 
 /// Joints of the body that the motion drives.

@@ -50,4 +50,4 @@ pub(crate) use segment_depth::{DeepestPoint, STEEP, find_deepest_point};
 pub use shape::ColliderShape;
 pub(crate) use side::{Edges, Side};
 pub use thin_shell::ThinShell;
-pub use voxelize::{Voxelizer, voxelize};
+pub use voxelize::{Voxelizer, VoxelizerInput, voxelize};

@@ -1,7 +1,7 @@
 //! A collider that moves during a frame.
 
 use super::{ColliderPose, ColliderShape};
-use crate::math::RigidTransform;
+use crate::math::{RigidTransform, nearer_start};
 
 /// A collider with its pose at the start and at the end of a frame.
 ///
@@ -10,8 +10,7 @@ use crate::math::RigidTransform;
 /// use hairspring::{collide::{ColliderShape, MovingCollider}, math::RigidTransform};
 ///
 /// let ball = ColliderShape::Sphere { center: Vec3::ZERO, radius: 0.1 };
-/// let start = RigidTransform::default();
-/// let end = RigidTransform { translation: Vec3::X * 0.01, ..start };
+/// let (start, end) = (RigidTransform::IDENTITY, RigidTransform::from_translation(Vec3::X * 0.01));
 /// let collider = MovingCollider::new(ball, start, end).with_user_data(42);
 /// assert!(collider.end_pose().distance(Vec3::X * 0.01) < 0.0);
 /// assert_eq!(collider.user_data, 42);
@@ -45,20 +44,17 @@ impl MovingCollider {
         Self { user_data, ..self }
     }
 
-    /// Returns the collider at the end of a frame throughout which it has moved.
+    /// Returns the pose at the end of the frame, with the motion of the whole frame.
     pub fn end_pose(&self) -> ColliderPose {
         ColliderPose::new(self.shape.clone(), self.start.matrix(), self.end.matrix(), 1.0)
     }
 
-    /// Returns the start pose for hair that was moved rigidly by `by` before the frame. The collider may or
-    /// may not have moved with the hair; the start pose that is closer to the end pose is used.
+    /// Returns the start pose for hair that was moved rigidly by `by` before the frame; see [`nearer_start`].
     pub(crate) fn start(&self, by: Option<&RigidTransform>) -> RigidTransform {
         let Some(by) = by else { return self.start };
-        let carried = by.after(&self.start);
-        let far = |from: &RigidTransform| {
+        nearer_start(self.start, *by * self.start, |from| {
             let turned = 1.0 - from.rotation.dot(self.end.rotation).abs();
             from.translation.distance_squared(self.end.translation) + turned
-        };
-        if far(&carried) < far(&self.start) { carried } else { self.start }
+        })
     }
 }

@@ -7,10 +7,10 @@ use glam::{Mat3, Vec3};
 
 /// Distance between the samples of a segment longer than [`LONG`], in cells of a field [1]; the outer samples
 /// are half of that from its ends. A segment therefore cannot cross a feature one cell thick unnoticed.
-const LOOK: f32 = 1.5;
+const SAMPLE_SPACING: f32 = 1.5;
 
 /// Maximum number of samples [1].
-const MAX_LOOKUPS: u32 = 8;
+const MAX_SAMPLES: u32 = 8;
 
 /// Length up to which a segment is sampled only at its middle, in cells [1].
 const LONG: f32 = 2.0;
@@ -28,14 +28,14 @@ const LONG: f32 = 2.0;
 #[derive(Clone)]
 pub struct ColliderPose {
     /// The shape.
-    pub shape: ColliderShape,
+    pub(crate) shape: ColliderShape,
     /// Pose at the end of the substep.
-    pub end: (Mat3, Vec3),
+    pub(crate) end: (Mat3, Vec3),
     /// Pose at the start of the substep.
-    pub start: (Mat3, Vec3),
+    pub(crate) start: (Mat3, Vec3),
     /// Duration of the substep as a fraction of the interval that the displacement of a deforming shape
     /// refers to.
-    pub interval_fraction: f32,
+    interval_fraction: f32,
     /// Bounding sphere at the end of the substep: center in world space and radius [m], which is infinite for
     /// a plane.
     bounds: (Vec3, f32),
@@ -46,9 +46,19 @@ pub struct ColliderPose {
     pub(crate) edges: Option<Edges>,
 }
 
+impl std::fmt::Debug for ColliderPose {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ColliderPose")
+            .field("shape", &self.shape)
+            .field("start", &self.start)
+            .field("end", &self.end)
+            .finish_non_exhaustive()
+    }
+}
+
 impl ColliderPose {
-    /// Creates the pose of a shape that moves from `start` to `end` in a substep that lasts `share` of an
-    /// interval.
+    /// Creates the pose of a shape that moves from `start` to `end` in a substep that lasts the fraction
+    /// `interval_fraction` of an interval.
     pub fn new(shape: ColliderShape, start: (Mat3, Vec3), end: (Mat3, Vec3), interval_fraction: f32) -> Self {
         let (center, radius) = shape.bounds();
         let bounds = (end.0 * center + end.1, radius);
@@ -56,6 +66,21 @@ impl ColliderPose {
         let turned = if start.0 == end.0 { Mat3::ZERO } else { Mat3::IDENTITY - start.0 * end.0.transpose() };
         let edges = Edges::new(&shape, start, end);
         Self { shape, start, end, interval_fraction, bounds, motion: (turned, end.1 - start.1), edges }
+    }
+
+    /// Returns the shape.
+    pub fn shape(&self) -> &ColliderShape {
+        &self.shape
+    }
+
+    /// Returns the rotation matrix and the translation [m] at the start of the substep.
+    pub fn start(&self) -> (Mat3, Vec3) {
+        self.start
+    }
+
+    /// Returns the rotation matrix and the translation [m] at the end of the substep.
+    pub fn end(&self) -> (Mat3, Vec3) {
+        self.end
     }
 
     /// Returns which of eight points may be inside at the end of the substep. The others are not.
@@ -183,7 +208,7 @@ impl ColliderPose {
     }
 
     /// Returns the segments in `may` for which `holds` is true at one of the samples. The samples are at most
-    /// [`LOOK`] cells of edge `cell` [m] apart.
+    /// [`SAMPLE_SPACING`] cells of edge `cell` [m] apart.
     #[inline(always)]
     fn between<S: Simd>(
         &self,
@@ -195,8 +220,10 @@ impl ColliderPose {
     ) -> Mask<S> {
         // Use as many samples as the longest of the eight segments needs.
         let mut looks = 1;
-        while looks < MAX_LOOKUPS
-            && size.simd_gt(F::splat(simd, (cell * LONG.max(looks as f32 * LOOK)).powi(2))).any_true()
+        while looks < MAX_SAMPLES
+            && size
+                .simd_gt(F::splat(simd, (cell * LONG.max(looks as f32 * SAMPLE_SPACING)).powi(2)))
+                .any_true()
         {
             looks += 1;
         }

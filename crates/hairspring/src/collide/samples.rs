@@ -7,7 +7,7 @@ use super::{
 };
 use glam::{UVec3, Vec3};
 
-/// The reason that samples are no signed distance field.
+/// Error returned by `SignedDistanceField::from_samples`.
 ///
 /// ```
 /// use glam::{UVec3, Vec3};
@@ -26,7 +26,7 @@ pub enum FieldError {
     #[error("the origin must be three finite numbers [m]")]
     Origin,
     /// An axis has fewer than 2 nodes, or the field has too many.
-    #[error("a field needs 2 or more nodes along each axis and at most 8388608 in all, not {0}")]
+    #[error("a field needs 2 or more nodes along each axis and at most {max} in all, not {0}", max = MAX_NODES)]
     Size(UVec3),
     /// The array does not have one sample for each node.
     #[error("a field of {nodes} nodes needs as many samples, not {samples}")]

@@ -18,7 +18,7 @@ pub(super) const PADDING: usize = 2;
 /// For an example, see [`SignedDistanceField::from_samples`].
 ///
 /// The default is an empty field, which a [`Voxelizer`](super::Voxelizer) fills. A query of an empty field panics.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Default, PartialEq)]
 pub struct SignedDistanceField {
     pub(super) lattice: Lattice,
     /// Distance at each node [m], followed by [`PADDING`] values of padding.
@@ -35,6 +35,17 @@ pub struct SignedDistanceField {
     pub(super) previous_slices: Vec<Arc<SignedDistanceField>>,
     /// One bit for each cell that has a point inside, at the index of its lower node. Empty: any cell may.
     inside: Vec<u32>,
+}
+
+impl std::fmt::Debug for SignedDistanceField {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SignedDistanceField")
+            .field("origin", &self.origin())
+            .field("cell", &self.cell())
+            .field("size", &self.size())
+            .field("triangles", &self.triangles.len())
+            .finish_non_exhaustive()
+    }
 }
 
 impl SignedDistanceField {
@@ -284,7 +295,7 @@ pub(super) mod tests {
     use super::*;
     use crate::{
         air::Air,
-        collide::{ColliderShape, MovingCollider, Voxelizer, voxelize},
+        collide::{ColliderShape, MovingCollider, Voxelizer, VoxelizerInput, voxelize},
         groom::Groom,
         material::Material,
         math::RigidTransform,
@@ -352,7 +363,9 @@ pub(super) mod tests {
                 // A deforming one, in a box that cuts through it.
                 let now: Vec<Vec3> = positions.iter().map(|p| *p * (1.0 + 3.0 * p.y)).collect();
                 let within = Some((Vec3::splat(-0.01), Vec3::new(0.06, 0.2, 0.07)));
-                Voxelizer::default().update(&mut grid, &now, Some(&positions), &triangles, within, 0.003);
+                let input = VoxelizerInput::new(&now, &triangles, 0.003);
+                let input = VoxelizerInput { previous_positions: Some(&positions), within, ..input };
+                Voxelizer::default().update(&mut grid, &input);
                 assert_marked(&grid, &format!("deforming balls {seed}, closed: {closed}"));
             }
         }
@@ -425,7 +438,8 @@ pub(super) mod tests {
                     air,
                 });
                 simulation.write_points(&mut points);
-                let distance = |p: &&Vec3| shape.distance(colliders[0].end.inverse_point(**p)).abs();
+                let distance =
+                    |p: &&Vec3| shape.distance(colliders[0].end.inverse_transform_point(**p)).abs();
                 touched += points.iter().filter(|p| distance(p) < 1e-4).count();
             }
             assert!(touched > 100, "{touched} points in contact");

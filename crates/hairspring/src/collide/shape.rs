@@ -5,6 +5,9 @@ use crate::simd::lanes::{F, Simd, V3, transform};
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
+/// Smallest squared length of a capsule's axis that is divided by [m²].
+const MIN_SQUARED_AXIS: f32 = 1e-12;
+
 /// A collider shape in its own space.
 ///
 /// For an example, see [`collide`](crate::collide).
@@ -105,7 +108,7 @@ impl ColliderShape {
             ColliderShape::Sphere { center, radius } => ball(p - *center, *radius),
             ColliderShape::Capsule { a, b, radius } => {
                 let axis = *b - *a;
-                let t = ((p - *a).dot(axis) / axis.length_squared().max(1e-12)).clamp(0.0, 1.0);
+                let t = ((p - *a).dot(axis) / axis.length_squared().max(MIN_SQUARED_AXIS)).clamp(0.0, 1.0);
                 ball(p - (*a + axis * t), *radius)
             }
             ColliderShape::Cuboid { center, half, axes } => {
@@ -189,8 +192,8 @@ impl ColliderShape {
         }
     }
 
-    /// Returns whether it is a solid whose [half thickness](Self::half_thickness) is less than `half` [m]. A
-    /// field without a side that short is not searched.
+    /// Returns whether it is a solid whose [half thickness](Self::half_thickness) is less than `half` [m]. For a
+    /// field, the grid's shortest side is tested first.
     pub(crate) fn is_thin(&self, half: f32) -> bool {
         match self {
             ColliderShape::Sheet(_) => false,
@@ -221,7 +224,7 @@ impl ColliderShape {
             ColliderShape::Capsule { a, b, radius } => {
                 let axis = *b - *a;
                 let from = p - V3::splat(simd, *a);
-                let t = from.dot(V3::splat(simd, axis)) * (1.0 / axis.length_squared().max(1e-12));
+                let t = from.dot(V3::splat(simd, axis)) * (1.0 / axis.length_squared().max(MIN_SQUARED_AXIS));
                 let t = t.max(0.0).min(1.0);
                 ball_lanes(from - V3::splat(simd, axis) * t, *radius)
             }

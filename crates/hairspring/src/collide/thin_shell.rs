@@ -28,7 +28,7 @@ pub(super) const REACH: f32 = 2.0;
 const NEAR_PLANE: f32 = 1.01;
 
 /// Maximum number of cells along the longest side.
-const CELLS: f32 = 128.0;
+const MAX_CELLS_PER_SIDE: f32 = 128.0;
 
 /// Maximum number of samples of a segment. A longer one counts as near the shell.
 const MAX_SAMPLES: u32 = 64;
@@ -48,7 +48,7 @@ const MAX_NODES: usize = 1 << 22;
 /// For an example, see [`collide`](crate::collide).
 ///
 /// The default is an empty shell, which [`ThinShell::update`] fills. A query of an empty shell may panic.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub struct ThinShell {
     /// Half-thickness: distance that it extends from its triangles on both sides [m].
     thickness: f32,
@@ -65,6 +65,15 @@ pub struct ThinShell {
     /// The shell at the end of each equal time slice of the last frame, except the last slice. Empty if it
     /// did not move far in that frame.
     pub(super) previous_slices: Vec<Arc<ThinShell>>,
+}
+
+impl std::fmt::Debug for ThinShell {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("ThinShell")
+            .field("thickness", &self.thickness)
+            .field("triangles", &self.corners.len())
+            .finish_non_exhaustive()
+    }
 }
 
 impl ThinShell {
@@ -122,7 +131,7 @@ impl ThinShell {
         let (lo, hi) = within.map_or((lo, hi), |(a, b)| (lo.max(a), hi.min(b)));
         let nowhere = within.map_or(Vec3::ZERO, |(a, _)| a);
         let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (nowhere, nowhere) };
-        let cell = reach.max((hi - lo).max_element() / CELLS);
+        let cell = reach.max((hi - lo).max_element() / MAX_CELLS_PER_SIDE);
         // A cell is at least as long as the reach, so a margin of one cell covers it.
         self.lattice = Lattice::covering(lo, hi, 1.0, cell, MAX_NODES);
 

@@ -27,6 +27,9 @@ pub(super) const BAND: f32 = 2.0;
 /// Maximum number of nodes of a grid; the cell is enlarged until it fits. 4 Mi nodes take 16 MiB.
 const MAX_NODES: usize = lattice::MAX_NODES / 2;
 
+/// Smallest squared edge of a triangle that is divided by [cells²].
+const MIN_SQUARED_EDGE: f32 = 1e-12;
+
 /// Builds the field of a closed mesh with cells of about `cell` [m].
 ///
 /// For an example, see [`collide`](crate::collide).
@@ -35,20 +38,45 @@ const MAX_NODES: usize = lattice::MAX_NODES / 2;
 /// If a triangle names a vertex that does not exist.
 pub fn voxelize(positions: &[Vec3], triangles: &[[u32; 3]], cell: f32) -> SignedDistanceField {
     let mut grid = SignedDistanceField::default();
-    Voxelizer::default().update(&mut grid, positions, None, triangles, None, cell);
+    Voxelizer::default().update(&mut grid, &VoxelizerInput::new(positions, triangles, cell));
     grid
+}
+
+/// Input of a [`Voxelizer`]: a closed mesh, and the grid of its field.
+///
+/// For an example, see [`Voxelizer`].
+#[derive(Clone, Copy, Debug)]
+pub struct VoxelizerInput<'a> {
+    /// Vertices of the mesh [m].
+    pub positions: &'a [Vec3],
+    /// Vertices one interval ago in the same space [m], if the mesh deforms. The field then also stores how far the
+    /// surface moved.
+    pub previous_positions: Option<&'a [Vec3]>,
+    /// Vertices of each triangle.
+    pub triangles: &'a [[u32; 3]],
+    /// Box to which the grid is clipped, (min, max) [m].
+    pub within: Option<(Vec3, Vec3)>,
+    /// Edge of a cell [m]. Cells are larger if there would be too many.
+    pub cell: f32,
+}
+
+impl<'a> VoxelizerInput<'a> {
+    /// Describes the field of a whole mesh that does not deform, with cells of `cell` [m].
+    pub fn new(positions: &'a [Vec3], triangles: &'a [[u32; 3]], cell: f32) -> Self {
+        Self { positions, previous_positions: None, triangles, within: None, cell }
+    }
 }
 
 /// Builds fields repeatedly, without allocating once its buffers have grown.
 ///
 /// ```
 /// use glam::Vec3;
-/// use hairspring::collide::{SignedDistanceField, Voxelizer};
+/// use hairspring::collide::{SignedDistanceField, Voxelizer, VoxelizerInput};
 ///
 /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
 /// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 /// let (mut voxelizer, mut field) = (Voxelizer::default(), SignedDistanceField::default());
-/// voxelizer.update(&mut field, &corners, None, &triangles, None, 0.1);
+/// voxelizer.update(&mut field, &VoxelizerInput::new(&corners, &triangles, 0.1));
 /// assert!(field.distance_and_normal(Vec3::splat(0.1)).0 < 0.0);
 /// ```
 #[derive(Default)]
@@ -60,25 +88,20 @@ pub struct Voxelizer {
     holes: Holes,
 }
 
+impl std::fmt::Debug for Voxelizer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Voxelizer").finish_non_exhaustive()
+    }
+}
+
 impl Voxelizer {
-    /// Rebuilds `grid` as the field of the mesh. `before`, if given, holds the vertices one interval ago in
-    /// the same space; the grid then also stores how far the surface moved.
-    ///
-    /// The grid covers the mesh with a margin of the band, clipped to the box `within` (min, max) [m] if
-    /// given. Its cells are of `cell` [m], or larger if that would take too many. A mesh without triangles
-    /// gives a field in which every point is far outside.
+    /// Rebuilds `grid` as the field of the mesh. The grid covers the mesh with a margin of the band, clipped to
+    /// `input.within`. A mesh without triangles gives a field in which every point is far outside.
     ///
     /// # Panics
-    /// If a triangle names a vertex that does not exist, also in `before`.
-    pub fn update(
-        &mut self,
-        grid: &mut SignedDistanceField,
-        positions: &[Vec3],
-        before: Option<&[Vec3]>,
-        triangles: &[[u32; 3]],
-        within: Option<(Vec3, Vec3)>,
-        cell: f32,
-    ) {
+    /// If a triangle names a vertex that does not exist, also in `input.previous_positions`.
+    pub fn update(&mut self, grid: &mut SignedDistanceField, input: &VoxelizerInput) {
+        let VoxelizerInput { positions, previous_positions, triangles, within, cell } = *input;
         let used = || triangles.iter().flatten().map(|i| positions[*i as usize]).filter(|p| p.is_finite());
         let lo = used().fold(Vec3::splat(f32::MAX), Vec3::min);
         let hi = used().fold(Vec3::splat(f32::MIN), Vec3::max);
@@ -88,7 +111,7 @@ impl Voxelizer {
         let nowhere = within.map_or(Vec3::ZERO, |(a, _)| a);
         let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (nowhere, nowhere) };
         let lattice = Lattice::covering(lo, hi, BAND + 0.5, cell, MAX_NODES);
-        grid.begin(lattice, positions, before, triangles);
+        grid.begin(lattice, positions, previous_positions, triangles);
         let size = lattice.size.as_usizevec3();
 
         // Assign the triangles to the layers that they are near to.
@@ -156,7 +179,7 @@ impl Flat {
         let [a, b, c] = corners;
         let edges = [b - a, c - b, a - c];
         let normal = edges[0].cross(c - a).normalize_or_zero();
-        let inverse = edges.map(|e| 1.0 / e.length_squared().max(1e-12));
+        let inverse = edges.map(|e| 1.0 / e.length_squared().max(MIN_SQUARED_EDGE));
         let out = edges.map(|e| e.cross(normal));
         corners.iter().all(|p| p.is_finite()).then_some(Self { corners, edges, inverse, normal, out, number })
     }
@@ -407,7 +430,8 @@ mod tests {
         // begins.
         let within = (Vec3::new(-0.05, -0.02, -0.06), Vec3::new(0.04, 0.3, 0.05));
         let mut part = SignedDistanceField::default();
-        Voxelizer::default().update(&mut part, &positions, None, &triangles, Some(within), 0.005);
+        let input = VoxelizerInput::new(&positions, &triangles, 0.005);
+        Voxelizer::default().update(&mut part, &VoxelizerInput { within: Some(within), ..input });
         assert!(part.distances.len() * 3 < whole.distances.len());
         for i in 0..2000u32 {
             let hash = |k: u32| ((i * 4 + k).wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32;
@@ -421,7 +445,7 @@ mod tests {
             );
         }
         let away = Some((Vec3::splat(1.0), Vec3::splat(2.0)));
-        Voxelizer::default().update(&mut part, &positions, None, &triangles, away, 0.005);
+        Voxelizer::default().update(&mut part, &VoxelizerInput { within: away, ..input });
         assert!(part.distance_and_normal(Vec3::splat(1.5)).0 > 0.0);
     }
 

@@ -27,11 +27,14 @@ pub(super) fn rides(groom: &Groom, guides: &[u32], weights: &[GuideWeights]) -> 
     (0..groom.strand_count()).into_par_iter().flat_map_iter(of_strand).collect()
 }
 
+/// Smallest length of a segment that is divided by [m].
+const MIN_LENGTH: f32 = 1e-9;
+
 /// Returns the position of arc length `at` among increasing `arcs`, as a 16-bit fraction of the points.
 fn position(arcs: &[f32], at: f32) -> u16 {
     let last = arcs.len() - 1;
     let i = arcs.partition_point(|a| *a <= at).clamp(1, last) - 1;
-    let t = ((at - arcs[i]) / (arcs[i + 1] - arcs[i]).max(1e-9)).clamp(0.0, 1.0);
+    let t = ((at - arcs[i]) / (arcs[i + 1] - arcs[i]).max(MIN_LENGTH)).clamp(0.0, 1.0);
     ((i as f32 + t) / last as f32 * u16::MAX as f32).round() as u16
 }
 

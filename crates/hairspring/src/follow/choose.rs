@@ -6,10 +6,16 @@ use glam::Vec3;
 
 /// Weight of the difference in shape of two strands, relative to the distance of their roots [1]. Hairs on
 /// either side of a parting have nearby roots but should not follow each other.
-const SHAPE: f32 = 0.25;
+const SHAPE_WEIGHT: f32 = 0.25;
+
+/// Smallest extent of the guides' roots that determines a cell [m].
+const MIN_EXTENT: f32 = 1e-4;
+
+/// Smallest cell of the search for guides [m].
+const MIN_CELL: f32 = 1e-5;
 
 /// Number of nearest guides considered for each hair before shape decides.
-const CANDIDATES: usize = 8;
+const MAX_CANDIDATES: usize = 8;
 
 /// Chooses about `count` guides spread over the scalp. Each group gets a number in proportion to its strands,
 /// rounded, and at least one, so there are more than `count` where many groups are small. Within a group, the
@@ -140,7 +146,7 @@ fn difference(groom: &Groom, a: usize, b: usize) -> f32 {
         let offset = |s: &[Vec3]| s[(s.len() - 1) * part / 2] - s[0];
         (offset(a) - offset(b)).length()
     };
-    a[0].distance(b[0]) + SHAPE * (shape(1) + shape(2)) * 0.5
+    a[0].distance(b[0]) + SHAPE_WEIGHT * (shape(1) + shape(2)) * 0.5
 }
 
 /// A hash grid of the guides by their root positions.
@@ -157,8 +163,8 @@ impl RootGrid {
         let lo = roots.iter().copied().fold(Vec3::MAX, Vec3::min);
         let hi = roots.iter().copied().fold(Vec3::MIN, Vec3::max);
         // Aims at about two guides in each cell, for a surface of the size of the bounding box.
-        let size = (hi - lo).max_element().max(1e-4);
-        let cell = (size * (2.0 / guides.len() as f32).sqrt()).max(1e-5);
+        let size = (hi - lo).max_element().max(MIN_EXTENT);
+        let cell = (size * (2.0 / guides.len() as f32).sqrt()).max(MIN_CELL);
         let mut grid = Self { cell, cells: Default::default(), by_group: Vec::new(), all: guides.to_vec() };
         for (g, root) in guides.iter().zip(&roots) {
             grid.cells.entry(grid.key(*root)).or_default().push(*g);
@@ -175,13 +181,13 @@ impl RootGrid {
         (p / self.cell).floor().as_ivec3().to_array()
     }
 
-    /// Returns the nearest [`CANDIDATES`] guides of the group by root position, or of any group if it has
+    /// Returns the nearest [`MAX_CANDIDATES`] guides of the group by root position, or of any group if it has
     /// none.
     fn nearest(&self, groom: &Groom, p: Vec3, group: u16) -> Vec<u32> {
         let own = self.by_group.get(group as usize).filter(|g| !g.is_empty());
         let pool = own.unwrap_or(&self.all);
         let fits = |g: u32| own.is_none() || groom.group(g as usize) == group;
-        let wanted = CANDIDATES.min(pool.len());
+        let wanted = MAX_CANDIDATES.min(pool.len());
         let mut found: Vec<(f32, u32)> = Vec::new();
         let k = self.key(p);
         for ring in 0..6 {
@@ -203,7 +209,7 @@ impl RootGrid {
             found = pool.iter().map(|g| (groom.strand(*g as usize)[0].distance_squared(p), *g)).collect();
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        found.into_iter().take(CANDIDATES).map(|f| f.1).collect()
+        found.into_iter().take(MAX_CANDIDATES).map(|f| f.1).collect()
     }
 }
 

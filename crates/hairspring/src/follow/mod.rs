@@ -72,7 +72,7 @@ pub struct FollowLayout {
     /// Coordinate of each point on each of its guides, as a 16-bit fraction of the guide's points; shape
     /// `[points]`.
     pub guide_coordinates: Vec<[u16; 3]>,
-    /// Allowed depth of each point inside a collider, 0 or less [m]; shape `[points]`.
+    /// Smallest signed distance from a collider that each point may have, 0 or less [m]; shape `[points]`.
     pub clearance: Vec<f32>,
     /// Whether a thin shell separates each point from its first guide in the rest pose. Such points may be on
     /// either side of shells. Shape `[points]`; empty if there is no such point.
@@ -110,6 +110,16 @@ pub struct HairInterpolation<'a> {
     pub colliders: &'a [MovingCollider],
 }
 
+impl std::fmt::Debug for Follow {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Follow")
+            .field("strands", &self.layout.weights.len())
+            .field("guides", &self.layout.guides.len())
+            .field("effects", &self.effects)
+            .finish_non_exhaustive()
+    }
+}
+
 impl std::fmt::Debug for HairInterpolation<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "HairInterpolation {{ {} guides }}", self.layout.guides.len())
@@ -123,11 +133,17 @@ impl FollowLayout {
     }
 
     /// Returns the range of a guide, given by its index among the guides, in the array of all guide points.
+    ///
+    /// # Panics
+    /// If there is no such guide.
     pub fn guide_range(&self, guide: usize) -> std::ops::Range<usize> {
         self.guide_offsets[guide] as usize..self.guide_offsets[guide + 1] as usize
     }
 
     /// Returns the index of a strand among the guides, or `None` if it is not a guide.
+    ///
+    /// # Panics
+    /// If there is no such strand.
     pub fn guide(&self, strand: usize) -> Option<usize> {
         Some(self.guide_indices[strand]).filter(|guide| *guide != u32::MAX).map(|guide| guide as usize)
     }
@@ -194,6 +210,9 @@ impl Follow {
     }
 
     /// Creates the same hairs with the same guides for another rest pose: that of `groom`, with `colliders`.
+    ///
+    /// # Panics
+    /// If `groom` has other strands or other numbers of points.
     pub fn with_rest_pose(&self, groom: Arc<Groom>, colliders: &[ColliderPose]) -> Self {
         let FollowLayout { guides, weights, .. } = &*self.layout;
         let name = |w: &GuideWeights| GuideWeights { guides: w.guides.map(|g| guides[g as usize]), ..*w };
@@ -236,16 +255,25 @@ impl Follow {
     }
 
     /// Returns the index of a strand among the guides, or `None` if it is not a guide.
+    ///
+    /// # Panics
+    /// If there is no such strand.
     pub fn guide(&self, strand: usize) -> Option<usize> {
         self.layout.guide(strand)
     }
 
     /// Returns the range of a guide, given by its index among the guides, in the array of all guide points.
+    ///
+    /// # Panics
+    /// If there is no such guide.
     pub fn guide_range(&self, guide: usize) -> std::ops::Range<usize> {
         self.layout.guide_range(guide)
     }
 
     /// Returns the index among the guides of the first guide of a strand, or its own if it is a guide.
+    ///
+    /// # Panics
+    /// If there is no such strand.
     pub fn first_guide(&self, strand: usize) -> usize {
         self.guide(strand).unwrap_or(self.layout.weights[strand].guides[0] as usize)
     }

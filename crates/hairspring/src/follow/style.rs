@@ -3,6 +3,9 @@
 use crate::settings::Effects;
 use glam::Vec3;
 
+/// Smallest length of hair in one turn of a curl [m].
+const MIN_CURL_LENGTH: f32 = 1e-4;
+
 /// Applies clumping toward the first guide, then curls, then noise. Each grows from zero at the root.
 pub(super) fn apply_styling(
     effects: &Effects,
@@ -46,7 +49,7 @@ fn displace(effects: &Effects, strand: u32, points: &mut [Vec3]) {
         normal = (normal - t * normal.dot(t)).normalize_or(t.any_orthonormal_vector());
         let side = t.cross(normal);
         let s = i as f32 / last;
-        let turn = phase + arc / effects.curl_length.max(1e-4) * std::f32::consts::TAU;
+        let turn = phase + arc / effects.curl_length.max(MIN_CURL_LENGTH) * std::f32::consts::TAU;
         let curl = (normal * (turn.cos() - phase.cos()) + side * (turn.sin() - phase.sin()))
             * (effects.curl_radius * s.min(0.25) * 4.0);
         let wave = |a: f32, b: f32| 0.7 * (a + s * 4.0).sin() + 0.3 * (b + s * 11.0).sin();

@@ -1,7 +1,7 @@
 //! Springs that attach points to a moving manipulator: a grab or a tie.
 //!
 //! ```text
-//! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf,   |T − x| ω² ≤ FIRMEST at the start of a frame
+//! a = ω² (T − x) + 2ζω (Ṫ − v)        ω = 2πf,   |T − x| ω² ≤ MAX_ACCELERATION at the start of a frame
 //! ```
 //!
 //! T moves linearly from its position at the start of the frame to that at the end. If the manipulator is
@@ -14,11 +14,14 @@ use glam::Vec3;
 /// Maximum acceleration of a bond due to the position error at the start of a frame [m/s²]: a thousand times
 /// gravity, ten times what whipping hair needs. Beyond it the attachment lags behind, so a hand that jumps
 /// away does not tear the hair.
-const FIRMEST: f32 = 1e4;
+const MAX_ACCELERATION: f32 = 1e4;
 
 /// Maximum speed at which points are moved relative to their root [m/s], about that of a fast hand. The
 /// remaining distance is covered in later frames.
-const FASTEST: f32 = 20.0;
+const MAX_SPEED: f32 = 20.0;
+
+/// Smallest stiffness over mass that is divided by [1/s²].
+const MIN_STIFFNESS: f32 = 1e-6;
 
 /// Spring parameters of the bonds.
 #[derive(Clone, Copy)]
@@ -82,7 +85,7 @@ impl Bonds {
         }
         let omega = std::f32::consts::TAU * spring.pull;
         let stiffness = omega * omega;
-        let farthest = FIRMEST / stiffness.max(1e-6);
+        let farthest = MAX_ACCELERATION / stiffness.max(MIN_STIFFNESS);
         let roots = strand.roots();
         let root_displacement = roots[1].translation - roots[0].translation;
         let dt = strand.frame.dt;
@@ -93,10 +96,10 @@ impl Bonds {
                 x += strand.segment(reached as usize).0;
             }
             let clearance = strand.clearance(bond.point as usize);
-            let [from, to] = [0, 1].map(|k| poses[k].point(bond.at(shares[k])));
+            let [from, to] = [0, 1].map(|k| poses[k].transform_point(bond.at(shares[k])));
             let from = bodies.out(from, clearance) - roots[0].translation;
             let to = bodies.out_at_end(to, clearance) - roots[1].translation;
-            let displacement = (to - from).clamp_length_max(FASTEST * dt);
+            let displacement = (to - from).clamp_length_max(MAX_SPEED * dt);
             let from = x + (from - x).clamp_length_max(farthest);
             strand.add_position_spring(bond.point as usize, [from, from + displacement], stiffness);
             strand.add_velocity_drag(

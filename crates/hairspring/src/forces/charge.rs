@@ -16,11 +16,11 @@
 //!
 //! # Missing
 //! Charge does not move: it does not flow along hair or to a body in contact, and it is not displaced in an
-//! uncharged body. The hair of one groom does not repel that of another.
+//! uncharged body.
 
 use super::{HairField, StrandView};
 use crate::material::profile_at;
-use crate::math::{RigidTransform, find_keys};
+use crate::math::{RigidTransform, find_keys, nearer_start};
 use crate::settings::define_settings;
 use glam::Vec3;
 
@@ -132,14 +132,12 @@ pub struct ChargedBall {
 }
 
 impl ChargedBall {
-    /// Adjusts the start position when hair was moved by `by` before the frame. The ball may have moved along
-    /// or not; the start that is nearer to the end position is used.
+    /// Adjusts the start position after hair was teleported by `by`. The ball may or may not have been teleported
+    /// with the hair. Of the two start positions, the one nearer to the end is used.
     pub(crate) fn carry(&mut self, by: Option<&RigidTransform>) {
         let [start, end] = self.centers;
-        let carried = by.map_or(start, |by| by.point(start));
-        if carried.distance_squared(end) < start.distance_squared(end) {
-            self.centers[0] = carried;
-        }
+        let carried = by.map_or(start, |by| by.transform_point(start));
+        self.centers[0] = nearer_start(start, carried, |center| center.distance_squared(end));
     }
 
     /// Returns k Q, limited by the breakdown field [V m].

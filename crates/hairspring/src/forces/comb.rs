@@ -58,22 +58,25 @@ fn slick() -> f32 {
 }
 
 /// Maximum speed at which a comb moves hair [m/s].
-const FASTEST: f32 = 20.0;
+const MAX_SPEED: f32 = 20.0;
+
+/// Smallest squared length of the comb that is divided by [m²].
+const MIN_SQUARED_LENGTH: f32 = 1e-12;
 
 /// Maximum number of samples on a point's path through the comb in a frame.
-const PLACES: f32 = 16.0;
+const MAX_SAMPLES: f32 = 16.0;
 
 impl Comb {
     /// Returns the weight w at `p` [m], in the comb's space.
     fn weight(&self, p: Vec3) -> f32 {
         let axis = self.b - self.a;
-        let t = ((p - self.a).dot(axis) / axis.length_squared().max(1e-12)).clamp(0.0, 1.0);
+        let t = ((p - self.a).dot(axis) / axis.length_squared().max(MIN_SQUARED_LENGTH)).clamp(0.0, 1.0);
         (1.0 - p.distance_squared(self.a + axis * t) / (self.radius * self.radius)).max(0.0)
     }
 
     /// Returns the mean weight along the path from `from` to `to` [m], in the comb's space.
     fn mean_weight(&self, from: Vec3, to: Vec3) -> f32 {
-        let places = (2.0 * from.distance(to) / self.radius).ceil().clamp(1.0, PLACES);
+        let places = (2.0 * from.distance(to) / self.radius).ceil().clamp(1.0, MAX_SAMPLES);
         let at = |k: u32| from.lerp(to, (k as f32 + 0.5) / places);
         (0..places as u32).map(|k| self.weight(at(k))).sum::<f32>() / places
     }
@@ -86,11 +89,13 @@ impl Comb {
         for i in 2..points {
             let (edge, v) = strand.segment(i);
             x += edge;
-            let [from, to] = [poses[0].inverse_point(x), poses[1].inverse_point(x + v * dt)];
+            let [from, to] =
+                [poses[0].inverse_transform_point(x), poses[1].inverse_transform_point(x + v * dt)];
             let weight = self.mean_weight(from, to);
             if weight > 0.0 {
                 let at = from.midpoint(to);
-                let velocity = ((poses[1].point(at) - poses[0].point(at)) / dt).clamp_length_max(FASTEST);
+                let velocity = ((poses[1].transform_point(at) - poses[0].transform_point(at)) / dt)
+                    .clamp_length_max(MAX_SPEED);
                 strand.add_transverse_drag(i, velocity, (self.grip - self.friction).max(0.0) * weight);
                 strand.add_velocity_drag(i, velocity, self.friction * weight);
             }

@@ -1,6 +1,7 @@
 //! External forces that a user of the library adds.
 
 use super::StrandView;
+use std::sync::Arc;
 
 /// An external force on hair, evaluated once a frame and strand, and constant over the substeps of the frame.
 ///
@@ -28,4 +29,11 @@ use super::StrandView;
 pub trait ForceField: Send + Sync {
     /// Adds the force on one strand. It is called on several threads at once, in no particular order.
     fn apply(&self, strand: &mut StrandView);
+}
+
+/// A force that several simulations share, or that the caller keeps.
+impl<T: ForceField + ?Sized> ForceField for Arc<T> {
+    fn apply(&self, strand: &mut StrandView) {
+        (**self).apply(strand);
+    }
 }

@@ -8,8 +8,7 @@
 //!      │││                │    ╰┼┼┼╯
 //! ```
 //!
-//! In steady motion, the points lag only under load: by g/ω² each, times the mass that they carry relative to
-//! their own.
+//! Held points lag by g/ω² times the ratio of the load they carry to their own mass.
 //!
 //! # Missing
 //! Fingers: hair does not slide through the ball. Use a collider for a hand that strokes the hair.

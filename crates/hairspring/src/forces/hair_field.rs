@@ -21,10 +21,13 @@ use std::sync::atomic::{AtomicI32, AtomicI64, Ordering::Relaxed};
 /// Cells along the longest side of the hair: about 3 cm each for long hair. Closer than that, contact between
 /// hairs dominates. The number bounds the cost of the sum of all nodes over all nodes, about a million for a
 /// ball of hair.
-const CELLS: f32 = 15.0;
+const CELLS_PER_SIDE: f32 = 15.0;
+
+/// Smallest cell [m].
+const MIN_CELL: f32 = 1e-6;
 
 /// Charge of an electron [C].
-const ELECTRON: f64 = 1.602e-19;
+const ELECTRON_CHARGE: f64 = 1.602e-19;
 
 /// The charge of all hair on a lattice, and its field.
 #[derive(Default)]
@@ -89,12 +92,12 @@ impl HairField {
         if !any {
             return;
         }
-        self.cell = (size.max_element() / CELLS).max(1e-6);
+        self.cell = (size.max_element() / CELLS_PER_SIDE).max(MIN_CELL);
         self.origin = lo;
         self.dims = (size / self.cell).to_array().map(|n| n.ceil().max(1.0) as usize + 1);
         // Reserve memory for the largest lattice, so that later frames do not allocate. Rounding may add a
         // cell.
-        let most = (CELLS as usize + 2).pow(3);
+        let most = (CELLS_PER_SIDE as usize + 2).pow(3);
         self.loaded.reserve(most.saturating_sub(self.loaded.len()));
         self.field.reserve(most.saturating_sub(self.field.len()));
         self.charges.resize_with(most, AtomicI64::default);
@@ -105,7 +108,7 @@ impl HairField {
     fn load(&self, charge: &LineCharge, strand: &StrandView) {
         let root = strand.roots()[0].translation;
         for ((x, _), (per_length, length)) in strand.points().zip(charge.at_points(strand)) {
-            let electrons = f64::from(per_length) * f64::from(length) / ELECTRON;
+            let electrons = f64::from(per_length) * f64::from(length) / ELECTRON_CHARGE;
             for (node, weight) in self.around(root + x).into_iter().flatten() {
                 self.charges[node].fetch_add((electrons * f64::from(weight)) as i64, Relaxed);
             }
@@ -119,7 +122,7 @@ impl HairField {
         let place =
             |n: usize| origin + Vec3::new((n % nx) as f32, (n / nx % ny) as f32, (n / nx / ny) as f32) * cell;
         let charges = &self.charges[..nodes];
-        let charge = |n: usize| (charges[n].load(Relaxed) as f64 * ELECTRON) as f32;
+        let charge = |n: usize| (charges[n].load(Relaxed) as f64 * ELECTRON_CHARGE) as f32;
         self.loaded.clear();
         self.loaded.extend((0..nodes).map(|n| (place(n), charge(n))).filter(|(_, charge)| *charge != 0.0));
         self.field.clear();

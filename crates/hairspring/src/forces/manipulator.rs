@@ -8,7 +8,10 @@ use super::{
     tie::Tie,
 };
 use crate::settings::{Check, Fields, Setting, Validate, with_prefix};
-use crate::{collide::FrameColliders, math::RigidTransform};
+use crate::{
+    collide::FrameColliders,
+    math::{RigidTransform, nearer_start},
+};
 use glam::Vec3;
 
 /// A tool that acts on hair by hand, in the space that it moves with.
@@ -80,10 +83,9 @@ impl ActiveManipulator {
     /// After a teleport of the hair: chooses the start pose that is nearer to the end pose, so that a
     /// manipulator that moved along has no motion of its own.
     pub fn go_along(&mut self) {
-        let away = |pose: &RigidTransform| pose.translation.distance_squared(self.poses[1].translation);
-        if away(&self.along) < away(&self.poses[0]) {
-            self.poses[0] = self.along;
-        }
+        let [start, end] = self.poses;
+        let distance = |pose: &RigidTransform| pose.translation.distance_squared(end.translation);
+        self.poses[0] = nearer_start(start, self.along, distance);
     }
 
     /// If the manipulator is a tie that is still gathering, lets hair slip through it, given the `bodies`.
@@ -101,8 +103,9 @@ impl ActiveManipulator {
         let pose = self.poses[0];
         for bonds in self.bonds.0.chunks_exact_mut(2) {
             read(bonds[0].place, points);
-            points.iter_mut().for_each(|p| *p = pose.inverse_point(*p));
-            let out = |place: Vec3| pose.inverse_point(bodies.out(pose.point(place), 0.0));
+            points.iter_mut().for_each(|p| *p = pose.inverse_transform_point(*p));
+            let out =
+                |place: Vec3| pose.inverse_transform_point(bodies.out(pose.transform_point(place), 0.0));
             if !tie.slip(self.time, points, out, bonds) {
                 bonds.iter_mut().for_each(|bond| bond.point = u32::MAX);
             }

@@ -23,6 +23,15 @@ pub struct StrandView<'a> {
     pub(super) tile: ForceTile<'a>,
 }
 
+impl std::fmt::Debug for StrandView<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("StrandView")
+            .field("index", &self.strand)
+            .field("points", &self.point_count())
+            .finish_non_exhaustive()
+    }
+}
+
 impl<'a> StrandView<'a> {
     /// Returns the index of the strand in the groom.
     pub fn index(&self) -> usize {
@@ -50,7 +59,7 @@ impl<'a> StrandView<'a> {
         let [start, end] = self.frame.anchor;
         [(start, root::START, root::TURN_START), (end, root::END, root::TURN_END)].map(
             |(anchor, place, turn)| RigidTransform {
-                translation: anchor.point(Vec3::from([0, 1, 2].map(|k| number(place + k)))),
+                translation: anchor.transform_point(Vec3::from([0, 1, 2].map(|k| number(place + k)))),
                 rotation: anchor.rotation * Quat::from_array([0, 1, 2, 3].map(|k| number(turn + k))),
             },
         )
@@ -90,7 +99,7 @@ impl<'a> StrandView<'a> {
         self.tile.rest[i * self.stride()][rest::MASS].0[self.lane]
     }
 
-    /// Returns the allowed depth of point `i` inside a collider, 0 or less [m].
+    /// Returns the smallest signed distance from a collider that point `i` may have, 0 or less [m].
     pub fn clearance(&self, i: usize) -> f32 {
         self.tile.rest[i * self.stride()][rest::CLEARANCE].0[self.lane]
     }
@@ -117,7 +126,7 @@ impl<'a> StrandView<'a> {
     }
 
     /// Adds a spring that pulls point `i` to a target. The target moves from `from` to `to` during the frame,
-    /// both relative to the root at that time [m]. `stiffness` is divided by the point's mass [1/s²].
+    /// both relative to the root at that time [m]. `stiffness` is the spring constant per mass, ω² [1/s²].
     pub fn add_position_spring(&mut self, i: usize, [from, to]: [Vec3; 2], stiffness: f32) {
         let rows = &mut self.tile.position_spring[i * self.stride()];
         rows[position_spring::STIFFNESS].0[self.lane] += stiffness;
@@ -129,13 +138,14 @@ impl<'a> StrandView<'a> {
         self.accelerate(i, to * stiffness);
     }
 
-    /// Adds drag that makes point `i` take on `velocity` [m/s] at `rate` [1/s].
+    /// Adds drag that relaxes the velocity of point `i` toward `velocity` [m/s] at `rate` [1/s].
     pub fn add_velocity_drag(&mut self, i: usize, velocity: Vec3, rate: f32) {
         self.tile.position_spring[i * self.stride()][position_spring::BRAKE].0[self.lane] += rate;
         self.accelerate(i, velocity * rate);
     }
 
-    /// Adds drag that makes point `i` take on `velocity` [m/s] transverse to its strand, at `rate` [1/s].
+    /// Adds drag that relaxes the velocity of point `i` transverse to its strand toward `velocity` [m/s] at `rate`
+    /// [1/s].
     pub fn add_transverse_drag(&mut self, i: usize, velocity: Vec3, rate: f32) {
         let rows = &mut self.tile.anisotropic_drag[i * self.stride()];
         rows[anisotropic_drag::BRAKE].0[self.lane] += rate;

@@ -64,10 +64,10 @@ fn half() -> f32 {
 }
 
 /// Time after gathering during which hair may still slip through [s].
-const SETTLES: f32 = 1.0;
+const SETTLING_TIME: f32 = 1.0;
 
 /// Hair slips if its offset from the target exceeds this fraction of its segment [1].
-const SLIPS: f32 = 0.5;
+const MAX_OFFSET: f32 = 0.5;
 
 impl Tie {
     pub(super) fn spring(&self) -> Spring {
@@ -105,7 +105,7 @@ impl Tie {
 
     /// Returns whether hair may still slip through at `time` [s] after gathering began.
     pub(super) fn settles(&self, time: f32) -> bool {
-        time < self.gather + SETTLES
+        time < self.gather + SETTLING_TIME
     }
 
     /// If the attached segment of a strand lags behind, attaches the next segment instead. `points` are those
@@ -121,7 +121,7 @@ impl Tie {
         let share = self.gathered(time);
         let first = bonds[0].point as usize;
         let length = points[first].distance(points[first + 1]);
-        if points[first].distance(out(bonds[0].at(share))) <= SLIPS * length {
+        if points[first].distance(out(bonds[0].at(share))) <= MAX_OFFSET * length {
             return true;
         }
         if first + 2 >= points.len() {

@@ -22,13 +22,16 @@ pub struct MortonCurve {
     scale: f32,
 }
 
+/// Smallest side of the covered box that is divided by [m].
+const MIN_EXTENT: f32 = 1e-9;
+
 /// Steps of the curve along each axis: three coordinates of ten bits are interleaved into 30 bits.
-const STEPS: f32 = 1024.0;
+const STEPS_PER_AXIS: f32 = 1024.0;
 
 impl MortonCurve {
     /// Creates the curve through the cube that starts at `lo` and covers the box from `lo` to `hi` [m].
     pub fn covering(lo: Vec3, hi: Vec3) -> Self {
-        Self { lo, scale: (STEPS - 1.0) / (hi - lo).max_element().max(1e-9) }
+        Self { lo, scale: (STEPS_PER_AXIS - 1.0) / (hi - lo).max_element().max(MIN_EXTENT) }
     }
 
     /// Creates the curve through the cube around `places` [m].
@@ -48,7 +51,7 @@ impl MortonCurve {
 
 /// Inserts two zeros after each of ten bits.
 fn spread(x: f32) -> u32 {
-    let mut x = x.clamp(0.0, STEPS - 1.0) as u32;
+    let mut x = x.clamp(0.0, STEPS_PER_AXIS - 1.0) as u32;
     x = (x | x << 16) & 0x0300_00ff;
     x = (x | x << 8) & 0x0300_f00f;
     x = (x | x << 4) & 0x030c_30c3;

@@ -17,14 +17,16 @@ mod curve;
 mod grow;
 mod precision;
 mod sanitize;
+mod stray;
 mod thicken;
 mod trim;
 
 pub use bind::{RootBinding, bind_roots, bind_roots_where};
 pub use curve::MortonCurve;
 pub use grow::{Growth, grow, grow_along};
-pub use precision::{Imprecise, MAX_COORDINATE, first_imprecise};
+pub use precision::{Imprecise, MAX_COORDINATE, first_imprecise, first_imprecise_moved};
 pub use sanitize::{Repairs, sanitize};
+pub use stray::has_stray_point;
 pub use thicken::{Thicken, thicken};
 pub use trim::{cut, keep_strands, thin};
 
@@ -70,7 +72,13 @@ pub struct Groom {
 /// Root radius of a strand if the file has none [m]: 35 µm, a typical human hair (see `material`).
 pub const DEFAULT_RADIUS: f32 = 35e-6;
 
-/// Dimensionless multipliers of the group's material for one strand. Default: all 1.
+/// Largest multiplier of a parameter of a material, for a strand or along it.
+pub(crate) const MAX_FACTOR: f32 = 1e4;
+
+/// Smallest multiplier of a parameter that may not be 0.
+pub(crate) const MIN_FACTOR: f32 = 1e-4;
+
+/// Dimensionless multipliers of the group's material for one strand, 0 to 10,000 each. Default: all 1.
 ///
 /// ```
 /// use hairspring::groom::StrandScale;
@@ -80,23 +88,23 @@ pub const DEFAULT_RADIUS: f32 = 35e-6;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrandScale {
-    /// Multiplier of the bending stiffness; 0 or more.
+    /// Multiplier of the bending stiffness.
     pub bend: f32,
-    /// Multiplier of the air drag; 0 or more.
+    /// Multiplier of the air drag.
     pub drag: f32,
-    /// Multiplier of the fiber's damping; 0 or more.
+    /// Multiplier of the fiber's damping.
     pub damping: f32,
-    /// Multiplier of the global shape's frequency; 0 or more.
+    /// Multiplier of the global shape's frequency.
     pub global_shape: f32,
-    /// Multiplier of the friction, which is at most 1; 0 or more.
+    /// Multiplier of friction. The product is clamped to 1.
     pub friction: f32,
-    /// Multiplier of the static charge; 0 or more.
+    /// Multiplier of the static charge.
     pub charge: f32,
-    /// Multiplier of the material's radius; above 0. A groom's own radii, which are used without it, are final.
+    /// Multiplier of `Material::radius`, 0.0001 or more. It has no effect on radii of the groom.
     pub radius: f32,
-    /// Multiplier of the flatness, which is 0.05 to 1; 0 or more.
+    /// Multiplier of the flatness, which is 0.05 to 1.
     pub flatness: f32,
-    /// Multiplier of the tether, which is at least 1; 0 or more.
+    /// Multiplier of the tether, which is at least 1.
     pub tether: f32,
 }
 
@@ -129,8 +137,8 @@ impl Validate for StrandScale {
             ("flatness", flatness),
             ("tether", tether),
         ];
-        let factors = factors.map(|(key, x)| check(x.is_finite() && x >= 0.0, key, "0 or more"));
-        let radius = check(radius.is_finite() && radius > 0.0, "radius", "above 0");
+        let factors = factors.map(|(key, x)| check((0.0..=MAX_FACTOR).contains(&x), key, "0 to 10000"));
+        let radius = check((MIN_FACTOR..=MAX_FACTOR).contains(&radius), "radius", "0.0001 to 10000");
         factors.into_iter().chain([radius]).collect()
     }
 }

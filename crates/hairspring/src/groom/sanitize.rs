@@ -1,6 +1,6 @@
 //! Repairs defects found in real files: duplicate points, non-finite values, strands of a single point.
 
-use super::{DEFAULT_RADIUS, Groom, MAX_COORDINATE};
+use super::{DEFAULT_RADIUS, Groom, MAX_COORDINATE, stray::stray_length};
 use glam::Vec3;
 
 /// Counts of what [`sanitize`] found and repaired. Nothing is changed without being counted here.
@@ -32,7 +32,7 @@ impl Repairs {
     }
 }
 
-/// Minimum segment length as a fraction of the strand's mean segment: 1 %.
+/// Minimum segment length as a fraction of the strand's mean segment: 1 %. Segments to stray points do not count.
 ///
 /// The stiffness of a stretch spring is EA/L, so a segment of a hundredth of the mean is a hundred times
 /// stiffer than its neighbors. The band solver in f32 still has five digits left for them. Uneven spacing by
@@ -214,13 +214,21 @@ fn short_segments(points: &[Vec3]) -> usize {
     if length < SHORTEST_STRAND.max(noise_of(points)) {
         return points.len() - 1;
     }
-    let shortest = shortest_segment(points.len(), length);
+    let shortest = shortest_segment(points, length);
     points.windows(2).filter(|w| w[0].distance(w[1]) < shortest).count()
 }
 
-/// Returns the minimum segment length for a strand of `count` points and `length` [m].
-fn shortest_segment(count: usize, length: f32) -> f32 {
-    SHORTEST_SEGMENT * length / (count - 1) as f32
+/// Returns the minimum segment length for a strand of this `length` [m].
+fn shortest_segment(points: &[Vec3], length: f32) -> f32 {
+    let mean = match stray_length(points) {
+        None => length / (points.len() - 1) as f32,
+        Some(limit) => {
+            let lengths = points.windows(2).map(|w| w[0].distance(w[1])).filter(|length| *length <= limit);
+            let (count, sum) = lengths.fold((0, 0.0), |(count, sum), length| (count + 1, sum + length));
+            sum / count as f32
+        }
+    };
+    SHORTEST_SEGMENT * mean
 }
 
 /// Moves points that are too near to a neighbor along the old strand; `at` [m] is the arc length of each
@@ -228,7 +236,7 @@ fn shortest_segment(count: usize, length: f32) -> f32 {
 /// the tip stays in place. The factor of two allows for chords at bends, which are shorter than the arc.
 fn spread_apart(points: &mut [Vec3], old: &[Vec3], at: &[f32]) {
     let (last, length) = (at.len() - 1, at[at.len() - 1]);
-    let gap = 2.0 * shortest_segment(at.len(), length);
+    let gap = 2.0 * shortest_segment(old, length);
     let mut to = at.to_vec();
     for i in 1..to.len() {
         to[i] = to[i].max(to[i - 1] + gap);
@@ -333,6 +341,22 @@ mod tests {
         assert_eq!(sanitize(&mut groom).zero_segments, 2);
         assert_eq!((groom.points[0], groom.points[4]), (strand[0], strand[4]));
         assert!(groom.points.windows(2).all(|w| w[0].distance(w[1]) > 4e-4), "{:?}", groom.points);
+    }
+
+    /// A point 50 m away makes the mean segment longer than the others by far.
+    #[test]
+    fn a_stray_point_does_not_move_the_others() {
+        let mut strand: Vec<Vec3> = (0..8).map(|k| Vec3::new(0.05, 1.6 + 0.03 * k as f32, 0.0)).collect();
+        strand[1].x = 50.0;
+        let mut groom = Groom::from_strands([strand.clone()], 4e-5);
+        assert_eq!(sanitize(&mut groom).total(), 0);
+        assert_eq!(groom.points, strand);
+        // A doubled point moves by as much as it does without the stray one.
+        strand[5] = strand[4];
+        let mut groom = Groom::from_strands([strand.clone()], 4e-5);
+        assert_eq!(sanitize(&mut groom).zero_segments, 1);
+        let moved = groom.points.iter().zip(&strand).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(moved > 0.0 && moved < 0.002, "moved by {moved} m");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::settings::{When, define_settings};
 use glam::Vec3;
 
 /// The condition under which the placement of the copies has an effect.
-const COPIED: When = When::Above0("groom.thicken.copies");
+const HAS_COPIES: When = When::Above0("groom.thicken.copies");
 
 define_settings! {
     /// Settings of [`thicken()`].
@@ -18,9 +18,9 @@ define_settings! {
         /// Number of follow hairs that are added around each strand.
         copies: u32 = 0, "hairs", {0 to 1000};
         /// Radius of the disc on the skin in which the copies grow.
-        radius: f32 = 0.001, ["m"], {0 or more}, when COPIED;
+        radius: f32 = 0.001, ["m"], {0 or more}, when HAS_COPIES;
         /// Distance of a copy from its strand at the tip, relative to that at the root.
-        tip: f32 = 1.0, "factor", {0 or more}, when COPIED;
+        tip: f32 = 1.0, "factor", {0 or more}, when HAS_COPIES;
     }
 }
 

@@ -4,7 +4,7 @@ use super::profile::is_profile;
 use crate::settings::{When, define_settings};
 
 /// The condition under which the other parameters of the global shape have an effect.
-const PULLED: When =
+const HAS_PULL: When =
     When::All(&[When::On("solver.global_shape"), When::Above0("material.global_shape.pull")]);
 
 define_settings! {
@@ -20,10 +20,10 @@ define_settings! {
         /// Multiplier of the frequency along the strand, from root to tip: `[1.0, 0.0]` holds the roots and leaves the
         /// tips free.
         profile: Vec<f32> = vec![1.0], "factors", {
-            check |shape| is_profile(&shape.profile) => "1 to 64 numbers, 0 or more"
-        }, when PULLED;
+            check |shape| is_profile(&shape.profile) => "1 to 64 numbers, 0 to 10000"
+        }, when HAS_PULL;
         /// Damping ratio of the spring, relative to critical.
-        damping: f32 = 0.5, "damping ratio", {0 to 10}, when PULLED;
+        damping: f32 = 0.5, "damping ratio", {0 to 10}, when HAS_PULL;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Profiles: curves from root to tip that multiply a parameter of a material.
 
 use super::Material;
-use crate::groom::StrandScale;
+use crate::groom::{MAX_FACTOR, MIN_FACTOR, StrandScale};
 use glam::Vec3;
 
 /// Largest number of values in a profile.
@@ -27,6 +27,9 @@ pub fn profile_at(profile: &[f32], along: f64) -> f64 {
     from + (to - from) * (at - k as f64)
 }
 
+/// Smallest length of a strand that is divided by [m].
+const MIN_LENGTH: f32 = 1e-9;
+
 impl Material {
     /// Returns the radius at each of a strand's `points` [m], by the material's radius, its profile, and the
     /// multipliers of the strand; `None` without a radius: then the groom's own radii are used.
@@ -36,7 +39,7 @@ impl Material {
         let mut along = 0.0;
         let at = |(i, p): (usize, &Vec3)| {
             along += p.distance(points[i.saturating_sub(1)]);
-            radius * profile_at(&self.radius_profile, f64::from(along / length.max(1e-9))) as f32
+            radius * profile_at(&self.radius_profile, f64::from(along / length.max(MIN_LENGTH))) as f32
         };
         Some(points.iter().enumerate().map(at).collect())
     }
@@ -47,14 +50,14 @@ pub(crate) fn varies(profile: &[f32]) -> bool {
     profile.iter().any(|value| *value != 1.0)
 }
 
-/// Returns whether the values of a profile are valid: 0 or more.
+/// Returns whether the values of a profile are valid: 0 to [`MAX_FACTOR`].
 pub(super) fn is_profile(values: &[f32]) -> bool {
-    (1..=MAX_VALUES).contains(&values.len()) && values.iter().all(|v| v.is_finite() && *v >= 0.0)
+    (1..=MAX_VALUES).contains(&values.len()) && values.iter().all(|v| (0.0..=MAX_FACTOR).contains(v))
 }
 
 /// Returns whether they are, for a parameter that may not be 0 anywhere.
 pub(super) fn is_positive_profile(values: &[f32]) -> bool {
-    is_profile(values) && values.iter().all(|v| *v > 0.0)
+    is_profile(values) && values.iter().all(|v| *v >= MIN_FACTOR)
 }
 
 /// Returns whether the weights of a distribution of mass are valid.

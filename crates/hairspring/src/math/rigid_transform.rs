@@ -1,6 +1,7 @@
 //! Rigid transforms: the poses of colliders, roots and joints.
 
 use glam::{Affine3A, Mat3, Quat, Vec3};
+use std::ops::Mul;
 
 /// A rotation followed by a translation.
 ///
@@ -16,11 +17,41 @@ pub struct RigidTransform {
 
 impl Default for RigidTransform {
     fn default() -> Self {
-        Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO }
+        Self::IDENTITY
+    }
+}
+
+/// `a * b` applies `b`, then `a`.
+impl Mul for RigidTransform {
+    type Output = Self;
+
+    fn mul(self, first: Self) -> Self {
+        Self {
+            rotation: self.rotation * first.rotation,
+            translation: self.transform_point(first.translation),
+        }
     }
 }
 
 impl RigidTransform {
+    /// The transform that changes nothing.
+    pub const IDENTITY: Self = Self::new(Vec3::ZERO, Quat::IDENTITY);
+
+    /// Creates the transform that rotates by a unit quaternion and then translates [m].
+    pub const fn new(translation: Vec3, rotation: Quat) -> Self {
+        Self { rotation, translation }
+    }
+
+    /// Creates a translation [m].
+    pub const fn from_translation(translation: Vec3) -> Self {
+        Self::new(translation, Quat::IDENTITY)
+    }
+
+    /// Creates a rotation about the origin by a unit quaternion.
+    pub const fn from_rotation(rotation: Quat) -> Self {
+        Self::new(Vec3::ZERO, rotation)
+    }
+
     /// Returns the rotation and translation of a joint's matrix, without its scale.
     pub fn from_affine(m: &Affine3A) -> Self {
         let (_, rotation, translation) = m.to_scale_rotation_translation();
@@ -44,14 +75,6 @@ impl RigidTransform {
         (Mat3::from_quat(self.rotation), self.translation)
     }
 
-    /// Returns the transform that applies `first`, then `self`.
-    pub fn after(&self, first: &RigidTransform) -> RigidTransform {
-        RigidTransform {
-            rotation: self.rotation * first.rotation,
-            translation: self.point(first.translation),
-        }
-    }
-
     /// Returns the inverse transform.
     pub fn inverse(&self) -> RigidTransform {
         let rotation = self.rotation.inverse();
@@ -59,12 +82,12 @@ impl RigidTransform {
     }
 
     /// Transforms a point from local to world space [m].
-    pub fn point(&self, p: Vec3) -> Vec3 {
+    pub fn transform_point(&self, p: Vec3) -> Vec3 {
         self.rotation * p + self.translation
     }
 
     /// Transforms a point from world to local space [m].
-    pub fn inverse_point(&self, p: Vec3) -> Vec3 {
+    pub fn inverse_transform_point(&self, p: Vec3) -> Vec3 {
         self.rotation.inverse() * (p - self.translation)
     }
 }

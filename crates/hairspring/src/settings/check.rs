@@ -1,5 +1,7 @@
 //! Rules of settings: one a value, used by the readers of scene files and by code that builds a simulation.
 
+use super::Range;
+use glam::Vec3;
 use std::borrow::Cow;
 
 /// A rule for the value of a setting.
@@ -40,6 +42,19 @@ pub trait Validate {
         match self.checks().into_iter().find(|check| !check.holds) {
             None => Ok(()),
             Some(Check { key, expected, .. }) => Err(OutOfRange { key, expected }),
+        }
+    }
+}
+
+/// Checks gravity [m/s²], which is a value of its own.
+///
+/// # Errors
+/// If it is not finite or out of range.
+pub fn validate_gravity(gravity: Vec3) -> Result<(), OutOfRange> {
+    match Range::Between(-1e4, 1e4).accepts(&gravity) {
+        true => Ok(()),
+        false => {
+            Err(OutOfRange { key: "gravity".into(), expected: "three numbers from -10000 to 10000 [m/s²]" })
         }
     }
 }

@@ -28,18 +28,17 @@
 /// ```
 ///
 /// A field is `name: Type = default, unit, {range}`, then optionally `default "text"`, which describes a default
-/// that is not a fixed value, and `when` with a [`When`](crate::settings::When). A unit in brackets appears in
-/// error messages; a unit without them says what a plain number is. The ranges are the arms `@text` of the
-/// macro. `{check |s| rule => "text"}` is a rule that needs other values.
+/// that is not a fixed value, and `when` with a [`When`](crate::settings::When). A unit in brackets is physical and
+/// appears in error messages. A unit without brackets describes a count or ratio. The ranges are the arms `@text` of
+/// the macro. `{check |s| rule => "text"}` is a rule that needs other values.
 ///
 /// - `pub struct` has a default for every field.
 /// - `entry struct` is an entry of a list: fields without a default are required. The serde attribute of a
 ///   field supplies the same default; a test of the book compares the two.
 /// - `entry enum` has variants with such fields, each with its key.
-/// - `file struct` and its types are for a reader: they always need serde. The other types implement serde's traits
-///   with the feature `serde` of the crate that defines them.
 /// - `choice` is an enum of words. The words replace serde's names.
-/// - `file struct` is a table of a scene file whose types are those of its reader.
+/// - `file struct` is a table of a scene file whose types are those of its reader. It always needs serde. The other
+///   types implement serde's traits with the feature `serde` of the crate that defines them.
 #[macro_export]
 macro_rules! define_settings {
     // A struct of settings with defaults.
@@ -357,6 +356,9 @@ macro_rules! define_settings {
     (@text $unit:literal {check $rule:expr => $text:literal}) => { $text };
     (@text $unit:literal {finite}) => { "a finite number" };
     (@text $unit:literal {vector}) => { "three finite numbers" };
+    (@text $unit:literal {vector $min:literal to $max:literal}) => {
+        concat!("three numbers from ", stringify!($min), " to ", stringify!($max))
+    };
     (@text $unit:literal {vector above 0}) => { "three numbers above 0" };
     (@text $unit:literal {direction}) => { "a vector with a length above 0" };
     (@text $unit:literal {color}) => { "three numbers from 0 to 1, or a text such as \"#a0522d\"" };
@@ -379,16 +381,14 @@ macro_rules! define_settings {
     (@range {check $rule:expr => $text:literal}) => { $crate::settings::Range::Described };
     (@range {finite}) => { $crate::settings::Range::Finite };
     (@range {vector}) => { $crate::settings::Range::Finite };
-    (@range {vector above 0}) => { $crate::settings::Range::Above(0.0) };
+    (@range {vector $($range:tt)+}) => { $crate::define_settings!(@range {$($range)+}) };
     (@range {direction}) => { $crate::settings::Range::Direction };
     (@range {color}) => { $crate::settings::Range::Color };
     (@range {above $min:literal at most $max:literal}) => {
         $crate::settings::Range::AboveAtMost($min as f32, $max as f32)
     };
     (@range {above $min:literal}) => { $crate::settings::Range::Above($min as f32) };
-    (@range {$min:literal to $max:literal}) => {
-        $crate::settings::Range::Between($min as f32, $max as f32)
-    };
+    (@range {$min:literal to $max:literal}) => { $crate::settings::Range::Between($min as f32, $max as f32) };
     (@range {$min:literal or more}) => { $crate::settings::Range::AtLeast($min as f32) };
     (@range {0 or $min:literal to $max:literal}) => {
         $crate::settings::Range::ZeroOr($min as f32, $max as f32)

@@ -22,11 +22,16 @@ mod volume;
 mod when;
 mod wind;
 
-pub use check::{Check, OutOfRange, Validate, check, holds, with_prefix};
+pub use check::{Check, OutOfRange, Validate};
+// For the expansion of `define_settings!` and the readers of scene files.
+#[doc(hidden)]
+pub use check::{check, holds, validate_gravity, with_prefix};
 pub use define::define_settings;
 pub use effects::Effects;
 pub use neighbours::Neighbours;
-pub use parameter::{Fields, Parameter, Setting, parameter};
+#[doc(hidden)]
+pub use parameter::parameter;
+pub use parameter::{Fields, Parameter, Setting};
 pub use range::Range;
 pub use solver::{Integrator, Quality, Response, Solver};
 pub use volume::{Volume, VolumeMethod};

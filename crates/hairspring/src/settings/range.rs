@@ -12,7 +12,7 @@ pub enum Range {
     Words,
     /// A table of other parameters.
     Table,
-    /// What the text of the definition says. A rule that needs other values is a function next to it.
+    /// A range that is described in words and checked by a function.
     Described,
     /// Finite numbers.
     Finite,

@@ -39,10 +39,11 @@ define_settings! {
         /// Fraction of the head's motion that acts on the hair, for art direction: 0 (none, as if the head stood
         /// still) to 1 (all).
         inertia: f32 = 1.0, "fraction", {0 to 1};
-        /// Teleport threshold. If the head moves farther than this in one frame, in excess of its previous
-        /// motion, the hair is moved rigidly with it.
+        /// Teleport threshold. If the head moves farther than this in one frame, or rotates by more than 90°, in
+        /// excess of its previous motion, the hair is moved rigidly with it.
         ///
-        /// With the default, such a motion within 1/24 s would be an acceleration of 60 g.
+        /// With the default, such a motion within 1/24 s would be an acceleration of 60 g. For frames longer than
+        /// 1/24 s, both thresholds grow in proportion to the length.
         teleport_distance: f32 = 1.0, ["m"], {above 0};
         /// Whether the global shapes of the materials are applied. By default, no material has one.
         global_shape: bool = true, "none", {switch};

@@ -15,7 +15,7 @@ define_settings! {
         method: VolumeMethod = VolumeMethod::Off, "none", {words};
         /// Edge of a grid cell; it is enlarged if there would be more than two million cells. By default, cells
         /// with hair contain eight points at rest, so that the density is statistically meaningful.
-        cell: Option<f32> = None, ["m"], {above 0},
+        cell: Option<f32> = None, ["m"], {above 0 at most 1},
             default "the smallest size that holds eight points at rest",
             when When::Any(&[When::IsNot("volume.method", &["off"]), When::Above0("wind_occlusion.hair")]);
         /// Rate at which hair takes on the velocity of the surrounding hair.

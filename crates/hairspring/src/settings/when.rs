@@ -4,7 +4,7 @@
 /// as `groom.effects.curl_radius`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum When {
-    /// It always has.
+    /// The parameter always has an effect.
     Always,
     /// A switch is on.
     On(&'static str),

@@ -13,9 +13,9 @@ macro_rules! dispatch {
     };
 }
 
-/// The same for the library's own unit tests, with the instructions of AVX2 whatever the level. Compiling the
-/// kernels takes most of the build time, and a test of their results needs them only once. Tests outside the
-/// library check that the results agree on every instruction set.
+/// Runs an expression in single precision in the library's own unit tests, with the instructions of AVX2 whatever the
+/// level. Compiling the kernels takes most of the build time, and a test of their results needs them only once. Tests
+/// outside the library check that the results agree on every instruction set.
 #[cfg(all(test, target_arch = "x86_64"))]
 macro_rules! dispatch {
     ($level:expr, $simd:pat => $op:expr) => {{
@@ -65,7 +65,8 @@ macro_rules! dispatch_comparison {
     }};
 }
 
-/// The same on other processors, and for the library's own unit tests.
+/// Runs an expression for the integrators that exist for comparison, on other processors and in the library's own
+/// unit tests.
 #[cfg(not(all(target_arch = "x86_64", not(one_lane), not(test))))]
 macro_rules! dispatch_comparison {
     ($level:expr, $double:expr, $simd:pat => $op:expr) => {{

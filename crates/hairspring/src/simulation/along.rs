@@ -11,6 +11,9 @@ use crate::{
 };
 use glam::Vec3;
 
+/// Smallest length of a strand that is divided by [m].
+pub(super) const MIN_LENGTH: f64 = 1e-9;
+
 /// Returns the constants at every particle, see `along`; empty if no material has such a profile.
 pub(super) fn constants(model: &StrandModel) -> Vec<AlongRows> {
     let is_varied = |m: &Material| {
@@ -29,7 +32,7 @@ pub(super) fn constants(model: &StrandModel) -> Vec<AlongRows> {
         let most = 1.0 / (material.friction * scale.friction).clamp(f32::MIN_POSITIVE, 1.0);
         let stride = tile.model.stride();
         let ends: Vec<f64> = arc_lengths(model.groom.strand(s));
-        let whole = ends[ends.len() - 1].max(1e-9);
+        let whole = ends[ends.len() - 1].max(MIN_LENGTH);
         for particle in 0..=(ends.len() - 1) * stride {
             // Extra particles are between two points.
             let (point, part) = (particle / stride, (particle % stride) as f64 / stride as f64);

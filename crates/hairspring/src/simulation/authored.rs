@@ -1,7 +1,11 @@
 //! Measurements of the authored groom: distances of points from their roots, depths of segments inside bodies, and
 //! points deep inside meshes.
 
-use super::{Simulation, along::arc_lengths, build::simulated_points};
+use super::{
+    Simulation,
+    along::{MIN_LENGTH, arc_lengths},
+    build::simulated_points,
+};
 use crate::parallel::prelude::*;
 use crate::{
     collide::{ColliderPose, ColliderShape},
@@ -14,7 +18,7 @@ use glam::Vec3;
 ///
 /// Other points may stay at their authored depth and rest on the surface at that depth. Deep inside a mesh with ears, a
 /// nose and a neck, such a surface has edges where the nearest skin changes sides, and hair on them never comes to rest.
-const DEEP: f32 = 5e-3;
+const MIN_PASSING_DEPTH: f32 = 5e-3;
 
 impl Simulation {
     /// Returns the largest distance of each point from its root, see `Tile::tether_lengths`.
@@ -33,7 +37,7 @@ impl Simulation {
             let tile = self.model.tiles[place / LANES];
             let points = self.model.groom.strand(s);
             let lengths = arc_lengths(points);
-            let whole = lengths[lengths.len() - 1].max(1e-9);
+            let whole = lengths[lengths.len() - 1].max(MIN_LENGTH);
             let mut before = 0.0f32;
             for (k, p) in points.iter().enumerate() {
                 // Where a coil turns back toward its root, at least the distance that the length of hair
@@ -90,9 +94,10 @@ impl Simulation {
     }
 }
 
-/// Returns the index of the mesh that `p` is more than [`DEEP`] inside of; of several, the one in which it is deepest.
+/// Returns the index of the mesh that `p` is more than [`MIN_PASSING_DEPTH`] inside of; of several, the one in which it
+/// is deepest.
 fn deep_inside(p: Vec3, colliders: &[ColliderPose]) -> Option<usize> {
     let meshes = colliders.iter().enumerate().filter(|(_, o)| matches!(o.shape, ColliderShape::Field(_)));
-    let depths = meshes.map(|(k, o)| (k, o.distance(p))).filter(|(_, d)| *d < -DEEP);
+    let depths = meshes.map(|(k, o)| (k, o.distance(p))).filter(|(_, d)| *d < -MIN_PASSING_DEPTH);
     depths.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(k, _)| k)
 }

@@ -6,7 +6,7 @@ use super::{
     cpu_solver::CpuSolver,
     layout::Order,
     manipulators::Manipulators,
-    strand_model::StrandModel,
+    strand_model::{StrandModel, material_of},
     strand_state::StrandState,
     teleport::Motion,
 };
@@ -44,7 +44,7 @@ impl Simulation {
         let SimulationBuilder { groom, strands, materials, solver, gravity, anchor, colliders, .. } = builder;
         let strands = &*strands;
         let materials = if materials.is_empty() { vec![Material::default()] } else { materials.to_vec() };
-        let material = |s: usize| &materials[(groom.group(s) as usize).min(materials.len() - 1)];
+        let material = |s: usize| material_of(&materials, &groom, s);
         let balanced = if solver.sag_free { gravity.as_dvec3() } else { DVec3::ZERO };
         let elastic: Vec<(Elastic, bool)> = strands
             .par_iter()
@@ -103,6 +103,7 @@ impl Simulation {
             tiles,
             solver,
             gravity,
+            rest_anchor: anchor,
         };
         let state = StrandState {
             anchor,
@@ -136,7 +137,7 @@ impl Simulation {
         simulation
     }
 
-    /// Puts a simulation together, without forces on the hair besides those of the model.
+    /// Assembles a simulation without force fields, hair volume or strand contact.
     fn with_parts(model: Arc<StrandModel>, state: StrandState) -> Self {
         let level = super::levels().next().unwrap_or_else(Level::new);
         Simulation {
@@ -174,7 +175,7 @@ impl Simulation {
         let anchor = self.state.anchor;
         let model = Arc::make_mut(&mut self.model);
         let (groom, solver) = (&*model.groom, model.solver);
-        let material = |s: usize| &model.materials[(groom.group(s) as usize).min(model.materials.len() - 1)];
+        let material = |s: usize| material_of(&model.materials, groom, s);
 
         let mut rest_of = model.rest.as_mut_slice();
         let mut state_of = self.state.points.as_mut_slice();
@@ -245,14 +246,14 @@ pub(super) fn write_surface(rows: &mut StrandRows, lane: usize, material: &Mater
 /// Shortest simulated segment, over the length of its strand [1]. Single precision resolves a point far from
 /// the root to 6e-8 of its distance. That is a thousandth of a segment of this length; the direction of a
 /// shorter one is noise.
-const SHORTEST: f32 = 5e-5;
+const MIN_SEGMENT_LENGTH: f32 = 5e-5;
 
 /// Returns the particles that a model simulates for a strand: the strand's points, and extra particles
 /// between them if the model has any. Points are moved apart along the strand where a segment is shorter than
-/// [`SHORTEST`] allows.
+/// [`MIN_SEGMENT_LENGTH`] allows.
 pub(super) fn simulated_points(model: Elastic, points: &[Vec3]) -> Cow<'_, [Vec3]> {
     let mut points = Cow::Borrowed(points);
-    let shortest = SHORTEST * points.windows(2).map(|w| w[0].distance(w[1])).sum::<f32>();
+    let shortest = MIN_SEGMENT_LENGTH * points.windows(2).map(|w| w[0].distance(w[1])).sum::<f32>();
     let short = |w: &[Vec3]| w[0].distance(w[1]) < shortest;
     if points.windows(2).any(short) {
         let own = points.to_mut();
@@ -322,7 +323,7 @@ fn radii(material: &Material, groom: &Groom, s: usize) -> Vec<f32> {
 /// Cross section at each of the strand's `points`.
 fn sections(material: &Material, scale: StrandScale, points: &[Vec3]) -> Vec<Section> {
     let lengths = arc_lengths(points);
-    let whole = lengths[lengths.len() - 1].max(1e-9);
+    let whole = lengths[lengths.len() - 1].max(along::MIN_LENGTH);
     lengths.iter().map(|length| Section::new(material, scale, length / whole)).collect()
 }
 
@@ -433,7 +434,7 @@ impl Lane<'_> {
             rows[rest::CLEARANCE].0[lane] = depth;
             Self::write_vector(&mut self.state[i][state::EDGE..], lane, at - before);
         }
-        let position = anchor.inverse_point(points[0]);
+        let position = anchor.inverse_transform_point(points[0]);
         let turn = anchor.rotation.inverse();
         for (at, rotation) in [(root::START, root::TURN_START), (root::END, root::TURN_END)] {
             Self::write_vector(&mut self.roots[at..], lane, position);

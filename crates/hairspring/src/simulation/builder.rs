@@ -1,12 +1,12 @@
 //! Builds a simulation from a groom and its settings.
 
-use super::{Simulation, try_step::is_finite};
+use super::{Simulation, strand_model::material_of, try_step::is_finite};
 use crate::{
     collide::ColliderPose,
     groom::Groom,
     material::Material,
     math::RigidTransform,
-    settings::{OutOfRange, Solver, Validate},
+    settings::{OutOfRange, Solver, Validate, validate_gravity},
 };
 use glam::Vec3;
 use std::{borrow::Cow, sync::Arc};
@@ -23,6 +23,19 @@ pub struct SimulationBuilder<'a> {
     pub(super) anchor: RigidTransform,
     pub(super) colliders: &'a [ColliderPose],
     pub(super) group_user_data: &'a [u128],
+}
+
+impl std::fmt::Debug for SimulationBuilder<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("SimulationBuilder")
+            .field("strands", &self.strands.len())
+            .field("materials", &self.materials.len())
+            .field("solver", &self.solver)
+            .field("gravity", &self.gravity)
+            .field("anchor", &self.anchor)
+            .field("colliders", &self.colliders.len())
+            .finish_non_exhaustive()
+    }
 }
 
 /// The reason that a simulation cannot be built.
@@ -100,9 +113,9 @@ pub enum BuildError {
         /// The setting.
         error: OutOfRange,
     },
-    /// Gravity is not finite.
-    #[error("gravity must be three finite numbers [m/s²]")]
-    Gravity,
+    /// Gravity is out of range.
+    #[error(transparent)]
+    Gravity(OutOfRange),
     /// The rest pose of the anchor is not finite.
     #[error("the rest pose of the anchor must consist of finite numbers")]
     Anchor,
@@ -168,15 +181,15 @@ impl<'a> SimulationBuilder<'a> {
         self
     }
 
-    /// Sets the colliders at rest. Points that start inside may stay at their depth. A point that starts more than 5 mm
-    /// inside a [`Field`](crate::collide::ColliderShape::Field) does not touch the collider of the same index in a step.
-    /// Default: none.
+    /// Sets the colliders at rest. Points that start inside may stay at their depth. Pass the colliders here and in
+    /// each step in the same order. A point that starts more than 5 mm inside a [distance
+    /// field](crate::collide::ColliderShape::Field) ignores that collider. Default: none.
     pub fn colliders_at_rest(mut self, colliders: &'a [ColliderPose]) -> Self {
         self.colliders = colliders;
         self
     }
 
-    /// Sets the data of the user for each group of the groom; see [`Simulation::group_user_data`]. A group past
+    /// Sets the user data of each group of the groom; see [`Simulation::group_user_data`]. A group past
     /// the end has 0. Default: 0 for all.
     pub fn group_user_data(mut self, user_data: &'a [u128]) -> Self {
         self.group_user_data = user_data;
@@ -231,9 +244,7 @@ impl<'a> SimulationBuilder<'a> {
         for (index, material) in self.materials.iter().enumerate() {
             material.validate().map_err(|error| BuildError::Material { index, error })?;
         }
-        if !self.gravity.is_finite() {
-            return Err(BuildError::Gravity);
-        }
+        validate_gravity(self.gravity).map_err(BuildError::Gravity)?;
         if !is_finite(&self.anchor) {
             return Err(BuildError::Anchor);
         }
@@ -244,8 +255,8 @@ impl<'a> SimulationBuilder<'a> {
     fn check_fiber(&self, strand: u32) -> Result<(), BuildError> {
         let (groom, s) = (&self.groom, strand as usize);
         groom.scale(s).validate().map_err(|error| BuildError::Scale { strand, error })?;
-        let material = self.materials.get(groom.group(s) as usize).or(self.materials.last());
-        if material.is_some_and(|material| material.radius.is_some()) {
+        // The default material has no radius.
+        if !self.materials.is_empty() && material_of(self.materials, groom, s).radius.is_some() {
             return Ok(());
         }
         let radii = &groom.radii[groom.range(s)];

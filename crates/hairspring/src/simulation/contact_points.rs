@@ -17,7 +17,8 @@ pub struct ContactPoint {
     pub fraction: f32,
     /// World position [m].
     pub position: Vec3,
-    /// Normal force in the last substep, above 0 [N].
+    /// Magnitude of the normal force on the strand in the last substep, above 0 [N]. The force is along the outward
+    /// normal of the collider. Friction is not included.
     pub force: f32,
     /// Index in `colliders` of the collider that is nearest to `position`. The solver stores the force of a
     /// contact, but not its collider. Where two colliders overlap, the force may be from the other one.
@@ -42,10 +43,10 @@ impl Simulation {
     /// let solver = Solver { sag_free: false, ..Solver::default() };
     /// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).solver(solver).build()?;
     /// let floor = ColliderShape::Plane { point: Vec3::NEG_Y * 0.05, normal: Vec3::Y };
-    /// let colliders = [MovingCollider::at_rest(floor, RigidTransform::default()).with_user_data(7)];
-    /// let (anchor, roots) = (RigidTransform::default(), [RigidTransform::default()]);
-    /// let input =
-    ///     StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &colliders, air: Air::default() };
+    /// let anchor = RigidTransform::IDENTITY;
+    /// let colliders = [MovingCollider::at_rest(floor, anchor).with_user_data(7)];
+    /// let roots = simulation.rigid_roots(anchor);
+    /// let input = StepInput::new(1.0 / 60.0, anchor, &roots).with_colliders(&colliders);
     /// (0..60).for_each(|_| _ = simulation.step(&input));
     /// let contacts = simulation.contact_points(&colliders);
     /// assert!(contacts.iter().all(|contact| contact.user_data == 7 && contact.normal == Vec3::Y));
@@ -88,7 +89,7 @@ impl Simulation {
 /// world space.
 fn nearest(colliders: &[MovingCollider], position: Vec3) -> Option<(usize, f32, Vec3)> {
     let seen = colliders.iter().enumerate().map(|(k, o)| {
-        let (distance, normal) = o.shape.distance_and_normal(o.end.inverse_point(position));
+        let (distance, normal) = o.shape.distance_and_normal(o.end.inverse_transform_point(position));
         (k, distance, o.end.rotation * normal)
     });
     seen.min_by(|a, b| a.1.total_cmp(&b.1))

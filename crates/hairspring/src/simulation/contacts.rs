@@ -21,8 +21,7 @@ pub struct Contacts {
     pub segments: usize,
     /// Sum of the normal forces of both [N].
     pub force: f64,
-    /// Pairs of a point and a collider for which a substep queries the distance: the point is in the
-    /// collider's bounds and, for a distance field, in a cell that is not entirely outside.
+    /// Number of point-collider pairs that pass the broad phase.
     pub distance_queries: usize,
 }
 
@@ -37,7 +36,7 @@ impl Simulation {
             .model
             .lane_of_strand
             .par_iter()
-            .map(|&place| self.strand_contacts(place as usize, &poses))
+            .map(|&place| self.collider_contacts(place as usize, &poses))
             .collect();
         of_strands.into_iter().fold(Contacts::default(), |a, b| Contacts {
             points: a.points + b.points,
@@ -47,7 +46,8 @@ impl Simulation {
         })
     }
 
-    fn strand_contacts(&self, place: usize, poses: &[(&ColliderShape, RigidTransform)]) -> Contacts {
+    /// Counts the contacts of one strand with colliders.
+    fn collider_contacts(&self, place: usize, poses: &[(&ColliderShape, RigidTransform)]) -> Contacts {
         let strand = self.strand(place);
         let root = strand.root();
         let mut out = Contacts::default();
@@ -68,7 +68,7 @@ impl Simulation {
 /// Returns whether a substep queries the distance of the world position `p` from a shape.
 fn may_touch(shape: &ColliderShape, pose: &RigidTransform, p: Vec3) -> bool {
     let (center, radius) = shape.bounds();
-    let local = pose.inverse_point(p);
+    let local = pose.inverse_transform_point(p);
     local.distance(center) <= radius
         && match shape {
             ColliderShape::Field(grid) => grid.may_be_inside_at(local),

@@ -17,7 +17,7 @@ use std::{
 const CIRCLE: usize = 24;
 
 /// Half of the length of the lines that mark a contact [m].
-const MARK: f32 = 0.0005;
+const CONTACT_HALF_LENGTH: f32 = 0.0005;
 
 /// Length of a contact's normal [m].
 const NORMAL: f32 = 0.005;
@@ -31,13 +31,14 @@ const SQUARES: i32 = 10;
 /// Duration for which a wind line follows the air [s].
 const WIND: f32 = 0.01;
 
-/// Distance of the points of a strand at which the wind is shown.
-const WIND_POINTS: usize = 4;
+/// Wind is drawn at every fourth point of a strand.
+const WIND_STRIDE: usize = 4;
 
 /// A line in world space.
 ///
 /// For an example, see [`Simulation::debug_lines`].
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct DebugLine {
     /// Start [m].
     pub a: Vec3,
@@ -150,8 +151,8 @@ impl Simulation {
     ///
     /// let strand: Vec<Vec3> = (0..16).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
     /// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
-    /// let (anchor, roots) = (RigidTransform::default(), [RigidTransform::default()]);
-    /// let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &[], air: Air::default() };
+    /// let roots = simulation.rigid_roots(RigidTransform::IDENTITY);
+    /// let input = StepInput::new(1.0 / 60.0, RigidTransform::IDENTITY, &roots);
     /// simulation.step(&input);
     /// let lines = simulation.debug_lines(&input, DebugRenderMode::SEGMENTS);
     /// assert_eq!(lines.len(), 15);
@@ -165,7 +166,7 @@ impl Simulation {
         for contact in self.contact_points(last.colliders) {
             if mode.contains(DebugRenderMode::CONTACT_POINTS) {
                 for axis in Vec3::AXES {
-                    let half = axis * MARK;
+                    let half = axis * CONTACT_HALF_LENGTH;
                     lines.add(DebugLineKind::ContactPoint, contact.position - half, contact.position + half);
                 }
             }
@@ -187,7 +188,7 @@ impl Simulation {
             let anchor = self.state.anchor;
             let bounds = self.volume.as_ref().and_then(|volume| volume.density(anchor).bounds());
             if let Some([lo, hi]) = bounds {
-                lines.add_box(DebugLineKind::Volume, |t| anchor.point(lo + (hi - lo) * t));
+                lines.add_box(DebugLineKind::Volume, |t| anchor.transform_point(lo + (hi - lo) * t));
             }
         }
         lines.0
@@ -220,7 +221,7 @@ impl Simulation {
         let mut noise = Noise::default();
         let air = last.air.moment(last.dt, &mut noise);
         for strand in self.each_strand() {
-            for point in strand.points().step_by(WIND_POINTS) {
+            for point in strand.points().step_by(WIND_STRIDE) {
                 lines.add(DebugLineKind::Wind, point, point + air.velocity(point) * WIND);
             }
         }
@@ -251,7 +252,7 @@ impl Lines {
         let count = (CIRCLE as f32 * part).round() as usize;
         let at = |k: usize| {
             let (sin, cos) = (TAU * part * k as f32 / count as f32).sin_cos();
-            pose.point(center + x * cos + y * sin)
+            pose.transform_point(center + x * cos + y * sin)
         };
         (0..count).for_each(|k| self.add(DebugLineKind::Collider, at(k), at(k + 1)));
     }
@@ -263,7 +264,7 @@ impl Lines {
     }
 
     fn add_triangle(&mut self, pose: &RigidTransform, triangle: &[Vec3; 3]) {
-        let [a, b, c] = triangle.map(|p| pose.point(p));
+        let [a, b, c] = triangle.map(|p| pose.transform_point(p));
         [(a, b), (b, c), (c, a)].into_iter().for_each(|(a, b)| self.add(DebugLineKind::Collider, a, b));
     }
 
@@ -281,11 +282,15 @@ impl Lines {
                     self.add_arc(pose, end, [y, cap], 0.5);
                 }
                 for side in [x, y, -x, -y] {
-                    self.add(DebugLineKind::Collider, pose.point(*a + side), pose.point(*b + side));
+                    self.add(
+                        DebugLineKind::Collider,
+                        pose.transform_point(*a + side),
+                        pose.transform_point(*b + side),
+                    );
                 }
             }
             ColliderShape::Cuboid { center, half, axes } => self.add_box(DebugLineKind::Collider, |t| {
-                pose.point(*center + *axes * (*half * (t * 2.0 - 1.0)))
+                pose.transform_point(*center + *axes * (*half * (t * 2.0 - 1.0)))
             }),
             ColliderShape::Plane { point, normal } => {
                 let x = normal.any_orthonormal_vector() * PLANE;
@@ -293,14 +298,15 @@ impl Lines {
                 for k in 0..=SQUARES {
                     let t = 2.0 * k as f32 / SQUARES as f32 - 1.0;
                     for (along, across) in [(x, y), (y, x)] {
-                        let [a, b] = [-1.0, 1.0].map(|end| pose.point(*point + across * t + along * end));
+                        let [a, b] =
+                            [-1.0, 1.0].map(|end| pose.transform_point(*point + across * t + along * end));
                         self.add(DebugLineKind::Collider, a, b);
                     }
                 }
             }
             ColliderShape::Field(field) => {
                 let size = (field.size().as_vec3() - 1.0) * field.cell();
-                self.add_box(DebugLineKind::Collider, |t| pose.point(field.origin() + size * t));
+                self.add_box(DebugLineKind::Collider, |t| pose.transform_point(field.origin() + size * t));
             }
             ColliderShape::Hull(hull) => hull.triangles().for_each(|t| self.add_triangle(pose, &t)),
             ColliderShape::Sheet(sheet) => sheet.triangles().iter().for_each(|t| self.add_triangle(pose, t)),

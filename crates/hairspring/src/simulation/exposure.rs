@@ -32,7 +32,7 @@ use std::{cmp::Reverse, collections::BinaryHeap, sync::Arc};
 const CELL: f32 = 0.005;
 
 /// Mean number of strands in an occupied cell below which cells are made larger [1].
-const FEW: f32 = 3.0;
+const MIN_STRANDS_PER_CELL: f32 = 3.0;
 
 /// Edge length from which on cells are no longer enlarged for that [m].
 const MAX_EDGE: f32 = 0.02;
@@ -43,8 +43,11 @@ const MAX_CELLS: f32 = 262_144.0;
 /// Drag coefficient Cd of a hair in a wind of about 1 m/s.
 const COEFFICIENT: f32 = 4.0;
 
+/// Smallest τ of a cell that is divided by [1].
+const MIN_DEPTH: f32 = 1e-6;
+
 /// Smallest share of the air: some air reaches every point.
-const LEAST: f32 = 0.02;
+const MIN_EXPOSURE: f32 = 0.02;
 
 impl Simulation {
     /// Enables self-occlusion, from the density of the groom at rest and `colliders` at rest. Without it,
@@ -54,7 +57,7 @@ impl Simulation {
         let low = points().fold(Vec3::INFINITY, Vec3::min);
         let high = points().fold(Vec3::NEG_INFINITY, Vec3::max);
         let mut grid = self.dense_grid(low, high, CELL);
-        while grid.edge < MAX_EDGE && grid.strands_per_cell() < FEW {
+        while grid.edge < MAX_EDGE && grid.strands_per_cell() < MIN_STRANDS_PER_CELL {
             grid = self.dense_grid(low, high, 2.0 * grid.edge);
         }
         let depth = grid.depths(colliders);
@@ -66,9 +69,9 @@ impl Simulation {
             for (i, point) in self.model.groom.strand(*s as usize).iter().enumerate() {
                 let cell = grid.cell(*point);
                 // A hair does not occlude itself.
-                let others = (grid.cost[cell] - own).max(1e-6);
+                let others = (grid.cost[cell] - own).max(MIN_DEPTH);
                 let mean = (1.0 - (-others).exp()) / others;
-                let exposure = (mean * (-depth[cell]).exp()).max(LEAST);
+                let exposure = (mean * (-depth[cell]).exp()).max(MIN_EXPOSURE);
                 let at = tile.first as usize + i * tile.model.stride();
                 found.push((at, place % LANES, exposure));
             }

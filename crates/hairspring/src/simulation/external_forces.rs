@@ -26,7 +26,7 @@ impl Simulation {
             && self.model.materials.iter().any(|material| material.global_shape.is_on());
         let charged = self.model.materials.iter().any(|material| material.charge != 0.0);
         let with_volume = self.volume_acts();
-        let occluded = self.wind_occlusion.is_on() && input.air.moves();
+        let occluded = self.wind_occlusion.is_on() && input.air.steady_moves();
         let custom = !self.force_fields.is_empty();
         let position_springs =
             global_shapes || charged || custom || !self.state.manipulators.active.is_empty();

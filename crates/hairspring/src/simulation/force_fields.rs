@@ -12,11 +12,11 @@ pub struct ForceId(u32);
 
 impl Simulation {
     /// Adds an external force, which acts in every step until it is removed. Forces act in the order in which
-    /// they were added, after the built-in ones.
-    pub fn add_force(&mut self, force: Arc<dyn ForceField>) -> ForceId {
+    /// they were added, after the built-in ones. To keep access to a force or to share it, add an [`Arc`] of it.
+    pub fn add_force(&mut self, force: impl ForceField + 'static) -> ForceId {
         let id = ForceId(self.forces_added);
         self.forces_added += 1;
-        self.force_fields.push((id, force));
+        self.force_fields.push((id, Arc::new(force)));
         id
     }
 

@@ -1,4 +1,4 @@
-//! Groups of strands: their handles, their strands, and data of the user.
+//! Groups of strands: their handles, their strands, and user data.
 
 use super::Simulation;
 
@@ -55,13 +55,13 @@ impl Simulation {
         self.strands().enumerate().filter(move |(_, s)| self.group_in_groom(*s) == group).map(|(k, _)| k)
     }
 
-    /// Returns the data of the user for a group, such as an entity of the engine. The simulation does not read
+    /// Returns the user data of a group, such as an entity of the engine. The simulation does not read
     /// it, and snapshots do not contain it. 0 if it was never set.
     pub fn group_user_data(&self, group: GroupId) -> u128 {
         self.group_user_data.get(usize::from(group.0)).copied().unwrap_or(0)
     }
 
-    /// Sets the data of the user for a group.
+    /// Sets the user data of a group.
     pub fn set_group_user_data(&mut self, group: GroupId, user_data: u128) {
         let index = usize::from(group.0);
         if index >= self.group_user_data.len() {

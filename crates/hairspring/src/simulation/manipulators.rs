@@ -37,7 +37,7 @@ impl Simulation {
         for (place, strand) in self.model.groom_strands.iter().enumerate() {
             if *strand != u32::MAX && tool.binds() {
                 self.strand_points(place, &mut points);
-                points.iter_mut().for_each(|p| *p = pose.inverse_point(*p));
+                points.iter_mut().for_each(|p| *p = pose.inverse_transform_point(*p));
                 tool.bind([*strand, place as u32], &points, &mut bonds);
             }
         }
@@ -83,7 +83,7 @@ impl Simulation {
     /// Updates where manipulators would be if they had moved rigidly with the hair.
     pub(super) fn carry_manipulators(&mut self, by: &RigidTransform) {
         for active in &mut self.state.manipulators.active {
-            active.along = by.after(&active.along);
+            active.along = *by * active.along;
         }
     }
 

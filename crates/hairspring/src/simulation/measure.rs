@@ -33,8 +33,8 @@ pub struct Measure {
     pub started_inside_depth: f64,
     /// Strands with such a point.
     pub started_inside_strands: usize,
-    /// Segments with a place more than a micrometer deeper inside a collider than any place of them was
-    /// authored. Each eighth of their length is tested.
+    /// Segments more than 1 µm deeper inside a collider than they were authored. Eight positions along the segment
+    /// are tested.
     pub inside_segments: usize,
     /// Segments of these that are more than a millimeter deeper.
     pub deep_segments: usize,
@@ -44,9 +44,8 @@ pub struct Measure {
     /// mesh that it was made from. The other depths are those that the solver sees. At sharp edges they differ
     /// by up to a third of the field's cell. Segments that were authored inside are left out.
     pub surface_depth: f64,
-    /// Segments that begin at a driven point inside a collider and are more than a millimeter deeper than
-    /// authored, but no deeper than their start. No motion of the strand can change that. They count as
-    /// inside only by what is deeper than their start.
+    /// Segments whose driven first point is inside a collider. The strand cannot move them out. Only depth beyond
+    /// that of the first point counts as penetration.
     pub held_segments: usize,
     /// Depth of the deepest of these segments [m].
     pub held_depth: f64,
@@ -118,7 +117,7 @@ impl Simulation {
                 let clearance = strand.clearance(i);
                 let depth = near(poses, root + x, clearance)
                     .filter(|(k, ..)| !strand.passes(i, *k))
-                    .map(|(_, o, pose)| clearance - o.shape.distance(pose.inverse_point(root + x)))
+                    .map(|(_, o, pose)| clearance - o.shape.distance(pose.inverse_transform_point(root + x)))
                     .fold(0.0, f32::max) as f64;
                 out.max_depth = out.max_depth.max(depth);
                 out.inside_points += (depth > INSIDE) as usize;
@@ -133,7 +132,7 @@ impl Simulation {
                     if strand.passes(i, k) || strand.passes(i - stride, k) {
                         continue;
                     }
-                    let [a, b] = [a, b].map(|p| pose.inverse_point(p));
+                    let [a, b] = [a, b].map(|p| pose.inverse_transform_point(p));
                     let least = o.shape.least_distance(a, b);
                     let begins = if begins_held { o.shape.distance(a).min(authored) } else { authored };
                     depth = depth.max(f64::from(begins - least));
@@ -171,7 +170,8 @@ impl Measure {
 
     /// Counts the point `p` [m], which was authored inside a collider, if it is inside one.
     fn count_started_inside(&mut self, poses: &[(&MovingCollider, RigidTransform)], p: Vec3) {
-        let depth = near(poses, p, 0.0).map(|(_, o, pose)| -o.shape.distance(pose.inverse_point(p)));
+        let depth =
+            near(poses, p, 0.0).map(|(_, o, pose)| -o.shape.distance(pose.inverse_transform_point(p)));
         let depth = f64::from(depth.fold(0.0, f32::max));
         if depth > INSIDE {
             self.inside_points += 1;
@@ -191,6 +191,6 @@ fn near<'a>(
     all.filter(move |(_, o, pose)| {
         let (center, radius) = o.shape.bounds();
         // A margin for the rounding of the sphere.
-        pose.point(center).distance(p) <= 1.0001 * (radius + reach.max(0.0))
+        pose.transform_point(center).distance(p) <= 1.0001 * (radius + reach.max(0.0))
     })
 }

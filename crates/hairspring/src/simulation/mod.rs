@@ -7,8 +7,9 @@
 //! let strand: Vec<Vec3> = (0..16).map(|i| Vec3::X * (0.01 * i as f32)).collect();
 //! let solver = Solver { sag_free: false, ..Default::default() };
 //! let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).solver(solver).build()?;
-//! let (anchor, roots) = (RigidTransform::default(), [RigidTransform::default()]);
-//! let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &roots, colliders: &[], air: Air::default() };
+//! let anchor = RigidTransform::IDENTITY;
+//! let roots = simulation.rigid_roots(anchor);
+//! let input = StepInput::new(1.0 / 60.0, anchor, &roots);
 //! let saved = simulation.snapshot();
 //! let report = simulation.step(&input);
 //! assert_eq!((report.substeps, report.reset_strands), (4, 0));
@@ -39,6 +40,7 @@ mod measure;
 mod place;
 mod points;
 mod reset;
+mod roots;
 mod solver;
 mod step;
 mod strand_contacts;
@@ -91,10 +93,12 @@ use strand_state::StrandState;
 
 /// Simulated strands, integrated by default with backward Euler and a direct banded solver.
 ///
-/// Settings are given to [`Simulation::builder`] and never change; the state is positions, velocities and
-/// tensions. A step gives bitwise the same result for any number of threads. Strands interact with bodies,
-/// with the air, and with each other: either as a volume (see [`Simulation::set_volume`]) or strand by strand
-/// (see [`Simulation::set_neighbours`]).
+/// Groom, materials and settings are given to [`Simulation::builder`]. [`Simulation::update_settings`] changes
+/// settings between steps where rest shapes do not depend on them. The state consists of positions, velocities,
+/// tensions, contacts, root poses, holds, manipulators and charged bodies; a [`Snapshot`] is a copy of it. A step
+/// gives bitwise the same result for any number of threads. Strands interact with bodies, with the air, and with
+/// each other: either as a volume (see [`Simulation::set_volume`]) or strand by strand (see
+/// [`Simulation::set_neighbours`]).
 ///
 /// # Limitations
 /// Cutting and wetting are not supported.
@@ -129,6 +133,18 @@ pub struct Simulation {
     group_user_data: Vec<u128>,
 }
 
+impl std::fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Simulation")
+            .field("strands", &self.strand_count())
+            .field("points", &self.point_count())
+            .field("materials", &self.model.materials.len())
+            .field("solver", &self.model.solver)
+            .field("gravity", &self.model.gravity)
+            .finish_non_exhaustive()
+    }
+}
+
 impl Simulation {
     /// Number of simulated strands.
     pub fn strand_count(&self) -> usize {
@@ -140,8 +156,8 @@ impl Simulation {
         self.strands().map(|s| self.model.groom.range(s as usize).len()).sum()
     }
 
-    /// Returns the number of joints that the sag-free start had to stiffen, and of those that are softer than
-    /// they should be.
+    /// Returns the changes that the sag-free start made: stiffened joints, joints limited by precision, and coils
+    /// simulated as rods.
     pub fn start(&self) -> Start {
         self.model.start
     }
@@ -232,7 +248,7 @@ impl Simulation {
         self.write_points_of(0..self.model.lane_of_strand.len(), out);
     }
 
-    /// The same for some of the strands, by their indices in that order.
+    /// Writes the points of the strands in `strands`. These are indices in the order given to the builder.
     ///
     /// # Panics
     /// If the strands do not exist, or `out` is too short for their points.

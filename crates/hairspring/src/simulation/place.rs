@@ -15,7 +15,8 @@ impl Simulation {
         let turn = anchor.rotation.inverse();
         for (k, root) in roots.iter().enumerate() {
             let lane = self.model.lane_of_strand[k] as usize;
-            self.strand_mut(lane).set_root(anchor.inverse_point(root.translation), turn * root.rotation);
+            self.strand_mut(lane)
+                .set_root(anchor.inverse_transform_point(root.translation), turn * root.rotation);
         }
         self.reset();
     }

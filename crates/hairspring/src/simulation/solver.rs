@@ -58,7 +58,7 @@ mod tests {
         let mut simulation = Simulation::builder(groom.clone()).build().unwrap();
         simulation.solver = Box::new(Rigid);
         let root = RigidTransform { translation: Vec3::X, rotation: Quat::from_rotation_x(0.5) };
-        let roots = [RigidTransform { translation: root.point(groom.points[0]), ..root }];
+        let roots = [RigidTransform { translation: root.transform_point(groom.points[0]), ..root }];
         simulation.step(&StepInput {
             dt: 0.1,
             anchor: root,
@@ -69,7 +69,7 @@ mod tests {
         let mut points = [Vec3::ZERO; 8];
         simulation.write_points(&mut points);
         for (point, rest) in points.iter().zip(&groom.points) {
-            assert!(point.distance(root.point(*rest)) < 1e-6, "{point}");
+            assert!(point.distance(root.transform_point(*rest)) < 1e-6, "{point}");
         }
     }
 }

@@ -19,20 +19,39 @@ use std::time::Duration;
 /// Input of a step. All poses are at the end of the frame; the start is the end of the last step.
 ///
 /// For an example, see [`simulation`](crate::simulation).
+#[derive(Clone, Copy, Debug)]
 pub struct StepInput<'a> {
-    /// Length of the frame [s], above 0. Below about 1e-5 s it is of no use: single precision then rounds the motion of a
-    /// substep away.
+    /// Length of the frame [s], above 0. Frames shorter than about 1e-5 s do not advance the hair, because single
+    /// precision rounds the motion of a substep to zero.
     pub dt: f32,
     /// Pose of the frame that roots move with (the head). Within the frame, roots follow the arc of its
     /// motion.
     pub anchor: RigidTransform,
-    /// World pose of each simulated root, in the order given to [`Simulation::builder`]: position [m] and
-    /// rotation since rest.
+    /// World pose of each simulated root, in the order given to [`Simulation::builder`]: position [m], and rotation
+    /// since the groom was authored. For roots that move rigidly with the anchor, see
+    /// [`Simulation::rigid_roots`].
     pub roots: &'a [RigidTransform],
     /// Colliders.
     pub colliders: &'a [MovingCollider],
     /// Moving air.
     pub air: Air<'a>,
+}
+
+impl<'a> StepInput<'a> {
+    /// Creates the input of a frame of `dt` [s] without colliders, in still air.
+    pub fn new(dt: f32, anchor: RigidTransform, roots: &'a [RigidTransform]) -> Self {
+        Self { dt, anchor, roots, colliders: &[], air: Air::default() }
+    }
+
+    /// Sets the colliders.
+    pub fn with_colliders(self, colliders: &'a [MovingCollider]) -> Self {
+        Self { colliders, ..self }
+    }
+
+    /// Sets the air.
+    pub fn with_air(self, air: Air<'a>) -> Self {
+        Self { air, ..self }
+    }
 }
 
 /// The result of a step. Counts that need a pass over the points are made on request: contacts and distance
@@ -51,7 +70,7 @@ pub struct StepReport {
     pub times: StepTimes,
 }
 
-/// Durations of the stages of a step. The little work between them (substep poses, tools) is not included.
+/// Durations of the stages of a step. Substep poses and manipulator updates are not included.
 ///
 /// For an example, see [`simulation`](crate::simulation).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -72,11 +91,11 @@ const FRAME: f32 = 1.0 / 60.0;
 
 /// Factor by which a substep may exceed its nominal length [1], so that a frame at 23.976 Hz has as many
 /// substeps as one at 24 Hz.
-pub(super) const LONGER: f64 = 1.0015;
+pub(super) const SUBSTEP_TOLERANCE: f64 = 1.0015;
 
-/// Largest number of substeps in a step, so that a very large `dt` after a stall does not stall the caller
-/// for good.
-const MAX_SUBSTEPS_OF_SOLID: u32 = 4096;
+/// Upper limit of the substeps in a step. It bounds the cost of a very large `dt`. The number is then rounded up to
+/// a multiple of the time slices of the colliders.
+const MAX_SUBSTEPS_PER_STEP: u32 = 4096;
 
 /// Local–global iterations in a substep at normal quality (Liu 2013, §6: ten).
 const LOCAL_GLOBAL: u32 = 10;
@@ -96,11 +115,10 @@ impl Simulation {
     /// Advances all strands to the end of a frame.
     ///
     /// The frame is divided into equal substeps. Each is at most 1/60 s over `solver.substeps` long, with a
-    /// tolerance of 0.15 %. The substep length therefore does not depend on frame rates that it divides, and
-    /// roots match the skin at every frame, which an accumulator with a remainder would not ensure. More
-    /// substeps are used where a body that is fast relative to its thickness passes through the hair. A step has at
-    /// most 4096 substeps, so that a very long frame (17 s with 4 substeps in 1/60 s) does not stall the caller; beyond, they
-    /// are longer.
+    /// tolerance of 0.15 %. The substep length is the same at 24, 30 and 60 Hz. Roots are exactly on the skin at the
+    /// end of each frame. More substeps are used where a body that is fast relative to its thickness passes through
+    /// the hair. A step has at most 4096 substeps, rounded up to a multiple of the time slices of deforming
+    /// colliders. In longer frames (17 s with 4 substeps in 1/60 s), the substeps are longer.
     ///
     /// State that is not finite, from input that is not, is reset and counted in the report.
     ///
@@ -118,9 +136,9 @@ impl Simulation {
         let carried = self.carry_along(input);
         // For bodies with several time slices, each slice has the same number of substeps.
         let parts = input.colliders.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
-        let substeps = ((f64::from(input.dt) / (substep_length(&solver) * LONGER)).ceil() as u32)
+        let substeps = ((f64::from(input.dt) / (substep_length(&solver) * SUBSTEP_TOLERANCE)).ceil() as u32)
             .max(self.substeps_past(input, carried.as_ref()))
-            .clamp(1, MAX_SUBSTEPS_OF_SOLID)
+            .clamp(1, MAX_SUBSTEPS_PER_STEP)
             .next_multiple_of(parts);
         let mut frame = std::mem::take(&mut self.frame);
         let looked_at = frame.segments;
@@ -209,7 +227,7 @@ impl Simulation {
             for (lane, k) in asked.iter().enumerate() {
                 let Some(root) = input.roots.get(*k as usize) else { continue };
                 let before = glam::Quat::from_array([0, 1, 2, 3].map(|k| rows[start + k].0[lane]));
-                let p = input.anchor.inverse_point(root.translation);
+                let p = input.anchor.inverse_transform_point(root.translation);
                 let q = turn * root.rotation;
                 // Of the two quaternions of the rotation, the one in the same hemisphere, as `nlerp`
                 // requires.

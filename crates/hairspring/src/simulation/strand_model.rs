@@ -3,6 +3,7 @@
 use crate::{
     groom::Groom,
     material::Material,
+    math::RigidTransform,
     settings::Solver,
     simd::lanes::Row,
     strand::{
@@ -15,9 +16,9 @@ use std::sync::Arc;
 
 /// Rest shapes, masses, stiffness, materials and memory layout of the simulated strands.
 ///
-/// Several simulations can share one model: see [`Simulation::instance`](super::Simulation::instance). It changes
-/// only by [`Simulation::take_over`](super::Simulation::take_over) and by the setters that are called before the
-/// first step, which copy it if it is shared.
+/// Several simulations can share one model: see [`Simulation::instance`](super::Simulation::instance). Functions that
+/// change it between steps, such as [`Simulation::update_settings`](super::Simulation::update_settings) and
+/// [`Simulation::take_over`](super::Simulation::take_over), copy it first if it is shared.
 #[derive(Clone)]
 pub(crate) struct StrandModel {
     pub(super) groom: Arc<Groom>,
@@ -57,13 +58,20 @@ pub(crate) struct StrandModel {
     pub(super) solver: Solver,
     /// Gravity [m/s²].
     pub(super) gravity: Vec3,
+    /// Pose of the anchor at rest.
+    pub(super) rest_anchor: RigidTransform,
     pub(super) start: Start,
 }
 
 impl StrandModel {
     /// Material of a strand of the groom.
     pub(super) fn material(&self, strand: usize) -> &Material {
-        let group = self.groom.group(strand) as usize;
-        &self.materials[group.min(self.materials.len() - 1)]
+        material_of(&self.materials, &self.groom, strand)
     }
+}
+
+/// Returns the material of a strand of `groom`, of one or more `materials`: that of its group. A group past the end
+/// uses the last one.
+pub(super) fn material_of<'a>(materials: &'a [Material], groom: &Groom, strand: usize) -> &'a Material {
+    &materials[(groom.group(strand) as usize).min(materials.len() - 1)]
 }

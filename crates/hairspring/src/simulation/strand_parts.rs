@@ -8,14 +8,14 @@
 
 use super::{
     Simulation, StepInput,
-    step::{LONGER, StepTimes},
+    step::{SUBSTEP_TOLERANCE, StepTimes},
 };
 use crate::{math::RigidTransform, strand::frame_context::FrameContext};
 use std::time::Instant;
 
 /// Longest interval for which the volume's accelerations are constant [s]. Tresses that swing into each other
 /// approach by a centimeter within it, about a cell.
-const LONGEST: f64 = 1.0 / 240.0;
+const MAX_INTERVAL: f64 = 1.0 / 240.0;
 
 impl Simulation {
     /// Computes the external forces, runs all substeps, and solves strand contacts between them. Returns how
@@ -27,7 +27,7 @@ impl Simulation {
         frame: &mut FrameContext,
     ) -> (usize, StepTimes) {
         let substeps = frame.now.len();
-        let exchanges = (f64::from(input.dt) / (LONGEST * LONGER)).ceil() as usize;
+        let exchanges = (f64::from(input.dt) / (MAX_INTERVAL * SUBSTEP_TOLERANCE)).ceil() as usize;
         let frozen = if self.volume_acts() { substeps.div_ceil(exchanges) } else { substeps };
         let mut neighbours = self.neighbours.take();
         frame.hair_contact = false;

@@ -31,7 +31,7 @@ impl Simulation {
         self.model.lane_of_strand.iter().map(|lane| self.strand(*lane as usize))
     }
 
-    /// The same, for writing.
+    /// The strand in lane `lane`, counted over all tiles, for writing.
     pub(super) fn strand_mut(&mut self, lane: usize) -> StrandMut<'_> {
         StrandMut::new(&self.model, &mut self.state, lane)
     }
@@ -254,12 +254,12 @@ impl<'a> StrandRef<'a> {
         [springs::K2, springs::L2].map(|row| self.rest(i, row))
     }
 
-    /// The same of the spring from particle `i` to the third after it.
+    /// Stiffness [N/m] and rest length [m] of the spring from particle `i` to the third after it; springs model only.
     pub fn torsion_spring(self, i: usize) -> [f32; 2] {
         [springs::K3, springs::L3].map(|row| self.rest(i, row))
     }
 
-    /// Permitted depth of particle `i` inside a collider, 0 or less [m].
+    /// Smallest permitted signed distance of particle `i` from a collider, 0 or less [m].
     pub fn clearance(self, i: usize) -> f32 {
         self.rest(i, rest::CLEARANCE)
     }
@@ -289,7 +289,7 @@ impl<'a> StrandMut<'a> {
         Self { model, state, lane }
     }
 
-    /// The same strand, for reading.
+    /// This strand, for reading.
     pub fn get(&self) -> StrandRef<'_> {
         StrandRef { model: self.model, state: self.state, lane: self.lane }
     }

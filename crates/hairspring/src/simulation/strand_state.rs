@@ -52,6 +52,15 @@ pub struct Snapshot {
     segments: bool,
 }
 
+impl std::fmt::Debug for Snapshot {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Snapshot")
+            .field("fingerprint", &self.fingerprint)
+            .field("anchor", &self.state.anchor)
+            .finish_non_exhaustive()
+    }
+}
+
 /// The reason that a [`Snapshot`] cannot be restored.
 ///
 /// For an example, see [`simulation`](crate::simulation).

@@ -21,30 +21,40 @@ use super::{
     step::{StepInput, substep_length},
 };
 use crate::parallel::prelude::*;
-use crate::{collide::MovingCollider, math::RigidTransform};
+use crate::{
+    collide::{ColliderShape, MovingCollider},
+    math::RigidTransform,
+};
 
 /// Largest motion of a body in a substep, over its half thickness [1]. A strand in contact then stays on the
 /// side where the contact began.
 pub const MAX_TRAVEL: f32 = 0.5;
 
-/// The same for a body thinner than [`VERY_THIN`] [1].
-const PART_OF_THIN: f32 = 0.25;
+/// Largest motion of a body thinner than [`VERY_THIN`] in a substep, over its half thickness [1].
+const MAX_TRAVEL_OF_THIN: f32 = 0.25;
 
-/// Half thickness below which [`PART_OF_THIN`] applies [m]. A segment is several times as long.
+/// Half thickness below which [`MAX_TRAVEL_OF_THIN`] applies [m]. A segment is several times as long.
 const VERY_THIN: f32 = 0.0025;
 
-/// Motion in a frame, over the radius of the body's bounding sphere, below which no refinement is needed [1]:
-/// bodies are not thinner than that.
+/// Motion in a frame, over the radius of the bounding sphere of a field or a thin shell, below which no refinement is
+/// needed [1]. It spares slow bodies the search for their thickness.
 const SLOW: f32 = 0.005;
 
-/// Largest number of substeps for one body. A sheet has almost no thickness.
-const MAX_SUBSTEPS: f32 = 256.0;
+/// Largest number of substeps that one body may require. A sheet has almost no thickness.
+const MAX_SUBSTEPS_OF_BODY: f32 = 256.0;
 
-/// The same for a solid body: a rod of 0.5 mm radius at 3 m/s requires 400 in a frame.
-const MAX_SUBSTEPS_OF_SOLID: f32 = 1024.0;
+/// Largest number of substeps that a solid body thinner than [`VERY_THIN`] may require. A rod of 0.5 mm radius at
+/// 3 m/s requires 400 in a frame.
+const MAX_SUBSTEPS_OF_THIN_SOLID: f32 = 1024.0;
 
 /// Half thickness below which fast hair may cross a body [m].
 const THIN: f32 = 0.02;
+
+/// Smallest motion in a substep that is divided by [m].
+const MIN_TRAVEL: f32 = 1e-12;
+
+/// Smallest squared length of a path that is divided by [m²].
+const MIN_SQUARED_PATH: f32 = 1e-12;
 
 impl Simulation {
     /// Returns the number of substeps in which no body tunnels through a strand; 1 if all bodies are slow or
@@ -54,26 +64,32 @@ impl Simulation {
         for collider in input.colliders {
             needed = needed.max(self.substeps_of_hair(input, carried, collider));
             // Relative to the anchor, because hair moves with it.
-            let start = self.state.anchor.inverse().after(&collider.start(carried));
-            let end = input.anchor.inverse().after(&collider.end);
+            let start = self.state.anchor.inverse() * collider.start(carried);
+            let end = input.anchor.inverse() * collider.end;
             let (center, radius) = collider.shape.bounds();
-            let [a, b] = [start, end].map(|pose| pose.point(center));
+            let [a, b] = [start, end].map(|pose| pose.transform_point(center));
             let turn = start.rotation.angle_between(end.rotation);
             let path = a.distance(b) + turn * radius;
-            if !path.is_finite() || !radius.is_finite() || path < SLOW * radius {
+            let searched = matches!(collider.shape, ColliderShape::Field(_) | ColliderShape::Sheet(_));
+            let slow = if searched { SLOW * radius } else { 0.0 };
+            if !path.is_finite() || !radius.is_finite() || path <= slow {
                 continue;
             }
             let half = collider.shape.half_thickness();
             let very_thin = collider.shape.is_thin(VERY_THIN);
-            let (part, most) =
-                if very_thin { (PART_OF_THIN, MAX_SUBSTEPS_OF_SOLID) } else { (MAX_TRAVEL, MAX_SUBSTEPS) };
-            let count = (path / (part * half).max(1e-12)).ceil().min(most);
+            let (part, most) = if very_thin {
+                (MAX_TRAVEL_OF_THIN, MAX_SUBSTEPS_OF_THIN_SOLID)
+            } else {
+                (MAX_TRAVEL, MAX_SUBSTEPS_OF_BODY)
+            };
+            let count = (path / (part * half).max(MIN_TRAVEL)).ceil().min(most);
             if count <= 1.0 {
                 continue;
             }
             let near = input.roots.iter().any(|root| {
-                let root = input.anchor.inverse_point(root.translation);
-                let along = ((root - a).dot(b - a) / (b - a).length_squared().max(1e-12)).clamp(0.0, 1.0);
+                let root = input.anchor.inverse_transform_point(root.translation);
+                let along =
+                    ((root - a).dot(b - a) / (b - a).length_squared().max(MIN_SQUARED_PATH)).clamp(0.0, 1.0);
                 root.distance(a.lerp(b, along)) < radius + turn * radius + self.model.longest
             });
             if near {
@@ -97,8 +113,8 @@ impl Simulation {
         }
         let (start, end) = (collider.start(carried), collider.end);
         let (center, radius) = shape.bounds();
-        let center = start.point(center);
-        let part = (MAX_TRAVEL * shape.half_thickness()).max(1e-12);
+        let center = start.transform_point(center);
+        let part = (MAX_TRAVEL * shape.half_thickness()).max(MIN_TRAVEL);
         let slow = part * input.dt / substep_length(&self.model.solver) as f32;
         let path_of_strand = |place: usize| {
             let strand = self.strand(place);
@@ -110,10 +126,11 @@ impl Simulation {
             for i in 0..strand.particle_count() {
                 let edge = strand.edge(i);
                 x += edge;
-                let own = start.inverse_point(x);
+                let own = start.inverse_transform_point(x);
                 // Hair at rest follows the head and the body when they move away together.
-                let slip = strand.velocity(i) * input.dt + x - end.point(own);
-                let with_head = input.anchor.point(self.state.anchor.inverse_point(x)) - x;
+                let slip = strand.velocity(i) * input.dt + x - end.transform_point(own);
+                let with_head =
+                    input.anchor.transform_point(self.state.anchor.inverse_transform_point(x)) - x;
                 let path = slip.length().min((slip + with_head).length());
                 if path > most.max(slow) && shape.distance(own) < path + edge.length() {
                     most = path;
@@ -127,6 +144,6 @@ impl Simulation {
             .par_iter()
             .map(|&place| path_of_strand(place as usize))
             .reduce(|| 0.0, f32::max);
-        (path / part).ceil().min(MAX_SUBSTEPS) as u32
+        (path / part).ceil().min(MAX_SUBSTEPS_OF_BODY) as u32
     }
 }

@@ -25,6 +25,9 @@ use crate::{
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
+/// Smallest squared length of a segment that is divided by [m²].
+const MIN_SQUARED_SEGMENT: f64 = 1e-24;
+
 impl Simulation {
     /// Continues from the state of `old` with the settings of `self`, which must be new. Every strand keeps
     /// its position and motion, and may be as deep in colliders as it was authored there. Manipulators and
@@ -168,7 +171,7 @@ impl Simulation {
             let (e, [a, b]) = (edge(j).as_dvec3(), [velocity(j), velocity(j + 1)].map(Vec3::as_dvec3));
             let length = f64::from(strand.get().rest_length(i));
             let aside = side(j, e.normalize_or(DVec3::Y), normal) * (ASIDE * length);
-            let spin = e.cross(b - a) / e.length_squared().max(1e-24);
+            let spin = e.cross(b - a) / e.length_squared().max(MIN_SQUARED_SEGMENT);
             strand.set_edge(i + 1, (0.5 * e + aside).as_vec3());
             strand.set_edge(i + 2, (0.5 * e - aside).as_vec3());
             strand.set_velocity(i + 1, (0.5 * (a + b) + spin.cross(aside)).as_vec3());

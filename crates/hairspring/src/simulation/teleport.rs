@@ -58,7 +58,7 @@ impl Simulation {
             neighbours.turn(by.rotation);
         }
         self.carry_manipulators(&by);
-        self.state.anchor = by.after(&self.state.anchor);
+        self.state.anchor = by * self.state.anchor;
         self.state.motion.velocity = turn * self.state.motion.velocity;
         self.state.motion.spin = turn * self.state.motion.spin;
     }
@@ -67,7 +67,7 @@ impl Simulation {
     /// teleports. Returns the applied motion.
     pub(super) fn carry_along(&mut self, input: &StepInput) -> Option<RigidTransform> {
         let solver = self.model.solver;
-        let motion = input.anchor.after(&self.state.anchor.inverse());
+        let motion = input.anchor * self.state.anchor.inverse();
         let moved = input.anchor.translation - self.state.anchor.translation;
         let turned = motion.rotation.to_scaled_axis();
         let expected = Quat::from_scaled_axis(self.state.motion.spin * input.dt);
@@ -81,7 +81,7 @@ impl Simulation {
         let by = if jumped {
             motion
         } else if solver.inertia < 1.0 {
-            self.state.anchor.lerp(&input.anchor, 1.0 - solver.inertia).after(&self.state.anchor.inverse())
+            self.state.anchor.lerp(&input.anchor, 1.0 - solver.inertia) * self.state.anchor.inverse()
         } else {
             self.state.motion = now;
             return None;

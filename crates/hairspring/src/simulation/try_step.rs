@@ -58,9 +58,7 @@ impl Simulation {
     ///
     /// let strand: Vec<Vec3> = (0..8).map(|i| Vec3::NEG_Y * (0.01 * i as f32)).collect();
     /// let mut simulation = Simulation::builder(Groom::from_strands([strand], 35e-6)).build()?;
-    /// let anchor = RigidTransform::default();
-    /// let input = StepInput { dt: 1.0 / 60.0, anchor, roots: &[], colliders: &[], air: Air::default() };
-    /// let refused = simulation.try_step(&input);
+    /// let refused = simulation.try_step(&StepInput::new(1.0 / 60.0, RigidTransform::IDENTITY, &[]));
     /// assert_eq!(refused, Err(StepError::RootCount { roots: 0, strands: 1 }));
     /// # Ok::<(), hairspring::simulation::BuildError>(())
     /// ```

@@ -1,9 +1,9 @@
 //! Changes settings of a running simulation in place, where rest shapes do not depend on them.
 
-use super::{Simulation, along, build::write_surface};
+use super::{Simulation, along, build::write_surface, strand_model::material_of};
 use crate::{
     material::Material,
-    settings::{OutOfRange, Solver, Validate},
+    settings::{OutOfRange, Solver, Validate, validate_gravity},
     simd::lanes::{LANES, Row},
     strand::tile::segment_contact,
 };
@@ -34,9 +34,7 @@ impl Simulation {
     ) -> Result<bool, OutOfRange> {
         materials.iter().try_for_each(Material::validate)?;
         solver.validate()?;
-        if !gravity.is_finite() {
-            return Err(OutOfRange { key: "gravity".into(), expected: "three finite numbers [m/s²]" });
-        }
+        validate_gravity(gravity)?;
         let default = [Material::default()];
         let materials = if materials.is_empty() { &default[..] } else { materials };
         let old = &self.model;
@@ -52,11 +50,11 @@ impl Simulation {
             model.materials = materials.to_vec();
             for (lane, s) in model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
                 let s = *s as usize;
-                let material = &model.materials[(model.groom.group(s) as usize).min(materials.len() - 1)];
+                let material = material_of(materials, &model.groom, s);
                 let scale = model.groom.scale(s);
                 write_surface(&mut model.strand[lane / LANES], lane % LANES, material, scale);
             }
-            // Friction is at most 1 with its profile, too.
+            // `along` depends on friction, because friction times its profile is clamped to 1.
             let (tethers, along) = (self.tethers(), along::constants(&self.model));
             let model = Arc::make_mut(&mut self.model);
             (model.tethers, model.along) = (tethers, along);

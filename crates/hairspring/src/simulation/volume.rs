@@ -26,7 +26,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The same with settings that are in range.
+    /// Creates or removes the hair volume, with settings that are in range.
     fn replace_volume(&mut self, settings: &settings::Volume) {
         let mut mass = vec![Row::default(); self.model.rest.len()];
         let (mut segments, mut sum, mut longest) = (0_usize, 0.0_f64, 0.0_f32);

@@ -26,7 +26,7 @@ use std::{
 
 /// The initial value of sums: −0 is the exact additive identity of floating-point numbers, including 0 and
 /// −0, so the compiler can remove the addition.
-const NOTHING: f32 = -0.0;
+const NEGATIVE_ZERO: f32 = -0.0;
 
 /// The part of the matrix that is currently worked on, for eight strands: the unknowns of one point and those
 /// within the half-bandwidth after it, `N` in all. Each point has `B` unknowns, of which the first three are
@@ -72,7 +72,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     /// An empty window.
     #[inline(always)]
     pub fn new(simd: S) -> Self {
-        let nothing = F::<S>::splat(simd, NOTHING);
+        let nothing = F::<S>::splat(simd, NEGATIVE_ZERO);
         let far = LongRangeSpring { u: V3::zero(simd), k: nothing, pull: nothing };
         Self { a: [[nothing; N]; N], b: [nothing; N], far }
     }
@@ -193,7 +193,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
         let (own, after) = factors[i * rows..][..(2 * reach + 1) * rows].split_at_mut((reach + 1) * rows);
         self.store_pending(simd, profile, 1..late, after);
         let LongRangeSpring { u, k: mut left, mut pull } = self.far;
-        let mut w = [F::<S>::splat(simd, NOTHING); B];
+        let mut w = [F::<S>::splat(simd, NEGATIVE_ZERO); B];
         for (w, u) in w.iter_mut().zip([u.x, u.y, u.z]) {
             *w = u * left;
         }
@@ -215,7 +215,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
                         compiler_fence(Ordering::SeqCst);
                         let point = &own[(reach - back) * rows..][..rows];
                         // The contribution of the previous point's long-range spring to this row.
-                        let mut long_range = F::<S>::splat(simd, NOTHING);
+                        let mut long_range = F::<S>::splat(simd, NEGATIVE_ZERO);
                         each!(k of 0 1 2 3, {
                             let last = profile.last(k);
                             if k < B && back * B + r <= last && (back > 0 || k < r) {
@@ -307,7 +307,7 @@ pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
             x[k] = after[k - B];
         }
     });
-    let mut far = F::<S>::splat(simd, NOTHING);
+    let mut far = F::<S>::splat(simd, NEGATIVE_ZERO);
     if profile.is_far() {
         let at = Profile::<B, N>::REACH * B;
         let u = V3::load(simd, &factors[profile.far_row(B)..]);

@@ -20,7 +20,7 @@ use crate::simd::lanes::{F, Simd, Sym3, V3, load};
 
 /// Stiffness of a hold in the matrix relative to the mass term [1]. A held point moves by a millionth of its
 /// free displacement.
-const HOLD: f32 = 1e6;
+const HOLD_STIFFNESS: f32 = 1e6;
 
 /// Torsional stiffness of a held frame [N m]: far above that of any hair, which is about 1e-6.
 const HOLD_FRAME: f32 = 1.0;
@@ -135,7 +135,7 @@ fn act<S, M, const B: usize, const N: usize>(
             let to_go = V3::load(simd, &at.rows[hold::DISPLACEMENT..]) * F::splat(simd, step.left);
             let target = V3::load(simd, &at.rows[hold::TARGET..]) - to_go - step.root.position;
             let m_h2 = mass * (step.inertia() * inv_h * inv_h);
-            let k = (pinned * HOLD).mul_add(m_h2, load(simd, &at.rows[hold::STIFFNESS]));
+            let k = (pinned * HOLD_STIFFNESS).mul_add(m_h2, load(simd, &at.rows[hold::STIFFNESS]));
             pending.add_identity(1, k);
             pending.add_force(1, (target - x - drift) * k + V3::load(simd, &at.rows[hold::FORCE..]));
         }

@@ -17,7 +17,7 @@ use super::tile::{Tile, along, strand};
 use crate::simd::lanes::{F, Simd, V3, load};
 
 /// v_s of the formula: the speed at which friction is halfway from static to kinetic [m/s].
-const SLIDES: f32 = 1e-3;
+const TRANSITION_SPEED: f32 = 1e-3;
 
 /// Friction coefficients of eight strands.
 pub struct Friction<S: Simd> {
@@ -36,7 +36,7 @@ impl<S: Simd> Friction<S> {
         Self {
             holds: tile.at_particle(load(simd, &tile.strand[strand::FRICTION]), i, along::FRICTION),
             kinetic: load(simd, &tile.strand[strand::FRICTION_KINETIC]),
-            halfway: 1.0 / (h * SLIDES),
+            halfway: 1.0 / (h * TRANSITION_SPEED),
         }
     }
 

@@ -76,7 +76,8 @@ impl<const B: usize, const N: usize> Profile<B, N> {
         first / B * self.rows() + row
     }
 
-    /// The same for the right-hand side of unknown `r`.
+    /// The row that holds the pending right-hand side of unknown `r`, relative to the rows of the window's first
+    /// point.
     pub const fn pending_right_row(self, r: usize) -> usize {
         let own = r % B;
         r / B * self.rows() + self.row(own) + self.last(own) - own

@@ -30,14 +30,14 @@ pub mod scratch {
 
 /// Lower bound of the squared relative length in the gradient [1]. The gradient of C vanishes with the
 /// segment's length, and without a bound the step would become arbitrarily large.
-const SHORT: f32 = 0.25;
+const MIN_SQUARED_LENGTH: f32 = 0.25;
 
 /// Relative length error below which projection stops [1], for a strand of [`SHORT_STRAND`] points. The
 /// tolerance is smaller for longer strands, which otherwise vibrate when all of their segments are corrected
 /// at once.
-const ENOUGH: f32 = 1e-4;
+const LENGTH_TOLERANCE: f32 = 1e-4;
 
-/// Number of points up to which [`ENOUGH`] applies.
+/// Number of points up to which [`LENGTH_TOLERANCE`] applies.
 const SHORT_STRAND: f32 = 32.0;
 
 /// The state of an iteration in its upward sweep, from the tip to the current segment.
@@ -84,7 +84,7 @@ impl<S: Simd> Projection<S> {
         let coupling = outer * u.dot(self.u);
         let c = coupling * self.inverse;
         store(c, &mut pulls[i + stride][C]);
-        let pivot = (-coupling).mul_add(c, (inner + outer) * size.max(SHORT));
+        let pivot = (-coupling).mul_add(c, (inner + outer) * size.max(MIN_SQUARED_LENGTH));
         let inverse = F::splat(simd, 1.0) / pivot.max(1e-30);
         let d = coupling.mul_add(self.d, error) * inverse;
         store(d, &mut pulls[i][D]);
@@ -171,7 +171,7 @@ impl<S: Simd> Enough<S> {
     #[inline(always)]
     fn of(simd: S, tile: &Tile) -> Self {
         let shorter = F::splat(simd, SHORT_STRAND) / load(simd, &tile.strand[strand::POINTS]);
-        Self(shorter.min(1.0) * ENOUGH)
+        Self(shorter.min(1.0) * LENGTH_TOLERANCE)
     }
 
     /// Returns the length error of a segment, from the square of its relative length, and the excess of the

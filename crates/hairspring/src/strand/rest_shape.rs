@@ -57,6 +57,21 @@ const LARGEST_CURVATURE: f64 = 0.9;
 /// is a quarter of that. A fiber that leans over or curls buckles sooner.
 const STANDING_SAFETY: f64 = 2.0;
 
+/// Number of points of a strand above which the largest stiffness of joints is reduced.
+const LONG_STRAND: f64 = 512.0;
+
+/// Largest bending stiffness of a joint over the largest stiffness of a spring on its point, times L² [1]. A joint acts
+/// on its middle point with both segments, 4 B/L² in all, a spring with one only. A quarter of the stiffness preserves
+/// the precision.
+const JOINT_SHARE: f64 = 0.25;
+
+/// Smallest share of twist in a joint that is nearly folded which the sag-free start assumes [1]. With a smaller one,
+/// the joint would need unbounded stiffness.
+const MIN_TWIST_SHARE: f64 = 0.1;
+
+/// Smallest length of a segment that is divided by [m].
+const MIN_LENGTH: f64 = 1e-9;
+
 /// Properties of a fiber along one strand.
 pub struct Fiber<'a> {
     /// Radius at each point [m].
@@ -92,7 +107,8 @@ pub struct Fiber<'a> {
 /// + τ/h.
 const STIFFEST_SINGLE: f64 = 4e6;
 
-/// The same in double precision, whose significand is 29 bits longer [1].
+/// Largest stiffness of an element of the matrix relative to the inertia of its points, in double precision, whose
+/// significand is 29 bits longer [1].
 const STIFFEST_DOUBLE: f64 = STIFFEST_SINGLE * (1u64 << 29) as f64;
 
 impl Fiber<'_> {
@@ -117,7 +133,7 @@ impl Fiber<'_> {
 /// Reduction of the largest stiffness of joints and triangles in a strand of `points`, relative to a shorter
 /// one [1]. A rounding error at one of them rotates everything beyond it.
 pub fn fine(points: usize) -> f64 {
-    (512.0 / points as f64).min(1.0)
+    (LONG_STRAND / points as f64).min(1.0)
 }
 
 /// One point of a rest shape.
@@ -156,8 +172,8 @@ pub struct Start {
     /// Joints whose bending stiffness the sag-free start raised, by the smallest amount that holds the shape:
     /// no fiber of the material could hold it.
     pub stiffened: usize,
-    /// Joints that are softer than the material, or than the shape requires, because double precision cannot
-    /// represent stiffer ones in a substep of this length. More substeps help. (Springs that hold the extra
+    /// Joints that are softer than the material, or than the shape requires, because the precision of the solve
+    /// cannot represent stiffer ones in a substep of this length. More substeps help. (Springs that hold the extra
     /// particles of a truss are not counted.)
     pub held_back: usize,
     /// Strands with the curvature model that are simulated as rods, because they coil by more than one and a
@@ -189,7 +205,7 @@ pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
     let n = points.len();
     let x: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
     let e: Vec<DVec3> = x.windows(2).map(|w| w[1] - w[0]).collect();
-    let lengths: Vec<f64> = e.iter().map(|e| e.length().max(1e-9)).collect();
+    let lengths: Vec<f64> = e.iter().map(|e| e.length().max(MIN_LENGTH)).collect();
     let t: Vec<DVec3> = e.iter().zip(&lengths).map(|(e, l)| *e / *l).collect();
     let total: f64 = lengths.iter().sum();
 
@@ -213,9 +229,7 @@ pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
     // Limits the stiffness of a joint. Returns 1 if it had to be reduced, else 0.
     let hold_back = |j: usize, at: &mut RestPoint| {
         let shorter = lengths[j - 1].min(lengths[j]);
-        // A joint acts on its middle point with both segments, 4 B/L² in all, a spring with one only. A
-        // quarter of the stiffness preserves the precision.
-        let stiffest = 0.25 * fine(n) * fiber.stiffest(at.mass) * shorter * shorter;
+        let stiffest = JOINT_SHARE * fine(n) * fiber.stiffest(at.mass) * shorter * shorter;
         let wanted = at.bend;
         at.bend = wanted.min(stiffest);
         usize::from(wanted > stiffest)
@@ -243,11 +257,10 @@ pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
             // The twist torques of the joints at both ends also act on this segment (see `rod`).
             let unfolded = |j: usize| 0.5 * (t[j - 1] + t[j]).length_squared();
             let binormal = |j: usize| t[j - 1].cross(t[j]) / unfolded(j).max(FOLDED as f64);
-            // The remaining share of twist in a joint that is nearly folded (see `rod`). At least a tenth is
-            // assumed here; otherwise the joint would need unbounded stiffness.
+            // The remaining share of twist in a joint that is nearly folded (see `rod`).
             let fade = |j: usize| {
                 let z = (unfolded(j) / FOLDING as f64).min(1.0);
-                (z * (2.0 - z)).max(0.1)
+                (z * (2.0 - z)).max(MIN_TWIST_SHARE)
             };
             let carried = weight * lengths[i] + below - binormal(i) * torque - torque_after;
             let axial = carried.dot(t[i]);

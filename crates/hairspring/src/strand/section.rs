@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// Smallest ratio of the short to the long axis [1].
-const FLATTEST: f32 = 0.05;
+const MIN_AXIS_RATIO: f32 = 0.05;
 
 /// Effect of a fiber's cross section on its stiffness. An ellipse with semi-axes a ≥ b and b/a = f has, for
 /// the same area as the circle of radius r: I_min = πr⁴f/4, I_max = πr⁴/4f, J = πr⁴ / (f + 1/f).
@@ -24,7 +24,7 @@ impl Section {
     /// The section of a strand's fiber at the fraction `along` of its length, 0 at the root and 1 at the tip.
     pub fn new(material: &Material, scale: StrandScale, along: f64) -> Self {
         let f = material.flatness * scale.flatness * profile_at(&material.flatness_profile, along) as f32;
-        let f = f.clamp(FLATTEST, 1.0);
+        let f = f.clamp(MIN_AXIS_RATIO, 1.0);
         Self {
             bend: f,
             flat: 1.0 / (f * f) - 1.0,

@@ -1,8 +1,9 @@
 //! Memory layout of eight strands: `[tile][point][component][lane]`. All substeps of a frame access one tile
 //! in the L1 caches.
 //!
-//! Strands are sorted by their number of points, and neighbors in that order share a tile. Shorter strands
-//! are padded with points of rest length zero, which coincide with the tip and carry no force.
+//! Strands are sorted by their elastic model and precision, then by their number of points, then along a Morton
+//! curve (`simulation/layout.rs`). Neighbors in that order share a tile. Shorter strands are padded with points of
+//! rest length zero, which coincide with the tip and carry no force.
 
 use super::tile_arrays::{access, tile_arrays};
 use crate::simd::lanes::{F, Row, Simd, load};
@@ -38,7 +39,7 @@ pub mod rest {
     pub const BEND: usize = 2;
     /// Rest change of tangent at this joint, in the frame of the segment before it, 3 rows [1].
     pub const TURN: usize = 3;
-    /// Permitted depth inside a collider, 0 or less: the authored depth [m].
+    /// Smallest permitted signed distance from a collider, 0 or less: the authored one [m].
     pub const CLEARANCE: usize = 6;
     /// Rest twist φ of the joint at this point, from the segment before to the one after, as 4 tan(φ/4) [1];
     /// see `rod`.

@@ -17,20 +17,20 @@ use super::{closest::closest, hair::Hair, response::Response};
 use glam::{Mat3, Vec3};
 
 /// Share of an overlap, or of a slip, that is corrected in a substep [1]. With x the overlap and η the share
-/// of the motion that an impulse stops, loads settle as x''' + η x'' + η (RECOVERY + LASTING) x' + η RECOVERY
-/// LASTING x = 0. That oscillates for η < RECOVERY LASTING / (RECOVERY + LASTING), which is a seventh.
+/// of the motion that an impulse stops, loads settle as x''' + η x'' + η (RECOVERY + LOAD_GAIN) x' + η RECOVERY
+/// LOAD_GAIN x = 0. That oscillates for η < RECOVERY LOAD_GAIN / (RECOVERY + LOAD_GAIN), which is a seventh.
 const RECOVERY: f32 = 0.2;
 
 /// Share of an impulse that is added to the load when it increases the load [1]. An impulse that decreases
 /// the load counts in full, so that a segment that is released is not thrown.
-const LASTING: f32 = 0.5;
+const LOAD_GAIN: f32 = 0.5;
 
 /// Gap, over the sum of the radii, up to which segments are near each other and bonds hold [1].
-pub const NEAR: f32 = 0.15;
+pub const MAX_NEAR_GAP: f32 = 0.15;
 
 /// Cosine between the normals of consecutive substeps below which an end of a segment has passed through the
 /// other segment [1]. For segments that cross, any rotation by more than a right angle is a passage.
-const PASSED: f32 = -0.7;
+const MIN_NORMAL_COSINE: f32 = -0.7;
 
 /// Parameters that all contacts share.
 pub struct SolverParams {
@@ -128,7 +128,7 @@ impl Contact {
             let inner = |s: f32| s > 0.0 && s < 1.0;
             let turned = normal.dot(old.normal);
             // Segments that have passed by more than their thickness stay on the new side.
-            if distance < within && turned < if inner(s) && inner(t) { 0.0 } else { PASSED } {
+            if distance < within && turned < if inner(s) && inner(t) { 0.0 } else { MIN_NORMAL_COSINE } {
                 (distance, normal) = (-distance, -normal);
             }
         }
@@ -154,7 +154,7 @@ impl Contact {
                 contact.slip = flat(old.slip + velocity * h);
             }
         }
-        let near = contact.gap < NEAR * within || contact.gap < -h * normal.dot(velocity);
+        let near = contact.gap < MAX_NEAR_GAP * within || contact.gap < -h * normal.dot(velocity);
         near.then_some(contact)
     }
 
@@ -219,10 +219,10 @@ impl Contact {
 
     /// Ends the substep. The load of the next is what acted both in this substep and in the one before.
     pub fn carry(&mut self, rules: &SolverParams) {
-        let share = if self.impulse.along < 0.0 { 1.0 } else { LASTING };
+        let share = if self.impulse.along < 0.0 { 1.0 } else { LOAD_GAIN };
         let total = Force {
             along: self.load.along + self.impulse.along * (share / rules.h),
-            across: self.load.across + self.impulse.across * (LASTING / rules.h),
+            across: self.load.across + self.impulse.across * (LOAD_GAIN / rules.h),
         };
         let Force { along, across } = self.last;
         self.load.along =

@@ -3,7 +3,7 @@
 //! Teschner et al. 2003, *Optimized Spatial Hashing for Collision Detection of Deformable Objects*, except
 //! that entries keep the cell, so that the cells of a bucket are told apart.
 
-use super::{contact::NEAR, hair::Hair};
+use super::{contact::MAX_NEAR_GAP, hair::Hair};
 use glam::{IVec3, Vec3};
 
 /// Largest mean number of cells that a segment's box overlaps. Cells grow until it is met.
@@ -12,8 +12,11 @@ const CELLS_A_SEGMENT: usize = 8;
 /// Buckets for each segment, before rounding up to a power of two.
 const BUCKETS_A_SEGMENT: usize = 4;
 
+/// Smallest cell [m].
+const MIN_CELL: f64 = 1e-9;
+
 /// Factor by which cells grow at a time while boxes overlap too many [1].
-const GROWTH: f32 = 1.25;
+const CELL_GROWTH: f32 = 1.25;
 
 /// Largest number of pairs for one segment. Collapsed hair has some tens of segments nearby. Hundreds
 /// coincide in one place, where each segment is in contact with many anyway.
@@ -103,7 +106,7 @@ impl Grid {
             // The motion is clamped to the segment's length. Faster segments may be missed.
             let length = ends[0].distance(ends[1]);
             let ways = [i, i + 1].map(|i| ((hair.v[i] - common) * h).clamp_length_max(length));
-            Boxed::new(segment, ends, (1.0 + NEAR) * hair.radius[i], ways)
+            Boxed::new(segment, ends, (1.0 + MAX_NEAR_GAP) * hair.radius[i], ways)
         });
     }
 
@@ -129,10 +132,10 @@ impl Grid {
         // Cells are as small as boxes are thick, so that segments in the same cell are near each other. They
         // are larger where boxes would overlap too many.
         let [shortest, longest] = size.map(|sum| sum / self.segments.len().max(1) as f64);
-        self.cell = shortest.max(longest / CELLS_A_SEGMENT as f64).max(1e-9) as f32;
+        self.cell = shortest.max(longest / CELLS_A_SEGMENT as f64).max(MIN_CELL) as f32;
         let most = self.entries.len() as f64;
         while self.segments.iter().map(|of| count(self.cell, &of.swept)).sum::<f64>() > most {
-            self.cell *= GROWTH;
+            self.cell *= CELL_GROWTH;
         }
         self.fill();
     }

@@ -74,7 +74,7 @@ pub(crate) struct Neighbours {
     settings: settings::Neighbours,
     /// The largest radius of a segment [m].
     radius: f32,
-    /// See [`NeighboursReport::crowded`].
+    /// See [`NeighboursReport::crowded_segments`].
     crowded: usize,
     pub hair: Hair,
     grid: Grid,
@@ -106,7 +106,7 @@ pub struct NeighboursReport {
     pub merged_strands: usize,
     /// Pairs of segments that the broad phase tested after the last substep.
     pub tested_pairs: usize,
-    /// Largest number of segments so far that had some neighbors ignored, because they exceeded the limit.
+    /// Largest number of segments in any substep that had more neighbors than the limit. The excess was ignored.
     pub crowded_segments: usize,
 }
 

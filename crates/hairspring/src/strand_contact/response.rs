@@ -12,7 +12,7 @@ use super::hair::Hair;
 
 /// Points in the window. Bending moves about a centimeter of hair in a substep of 1/240 s, and segments are
 /// rarely shorter than 2 mm.
-pub const WINDOW: usize = 8;
+pub const WINDOW_POINTS: usize = 8;
 
 /// Velocity changes of the points from `first` on, for a unit of impulse on a segment.
 #[derive(Clone, Copy)]
@@ -20,7 +20,7 @@ pub struct Response {
     first: u32,
     count: u32,
     /// Velocity change over impulse [1/kg].
-    change: [f32; WINDOW],
+    change: [f32; WINDOW_POINTS],
 }
 
 impl Response {
@@ -29,11 +29,11 @@ impl Response {
     pub fn of(i: u32, s: f32, hair: &Hair, h: f32) -> Self {
         let i = i as usize;
         let strand = hair.strand(hair.of[i] as usize);
-        let first = i.saturating_sub(WINDOW / 2 - 1).max(strand.start);
-        let count = (strand.end - first).min(WINDOW);
+        let first = i.saturating_sub(WINDOW_POINTS / 2 - 1).max(strand.start);
+        let count = (strand.end - first).min(WINDOW_POINTS);
         // Rows of the upper band: the diagonal, and the next two.
-        let mut a = [[0.0_f32; 3]; WINDOW];
-        let mut change = [0.0; WINDOW];
+        let mut a = [[0.0_f32; 3]; WINDOW_POINTS];
+        let mut change = [0.0; WINDOW_POINTS];
         (change[i - first], change[i + 1 - first]) = (1.0 - s, s);
         for k in 0..count {
             let mass = hair.inverse_mass[first + k];
@@ -50,7 +50,7 @@ impl Response {
             }
         }
         // LDLᵀ without the driven points.
-        let mut inverse = [0.0_f32; WINDOW];
+        let mut inverse = [0.0_f32; WINDOW_POINTS];
         for k in 0..count {
             if hair.inverse_mass[first + k] > 0.0 {
                 inverse[k] = a[k][0].recip();

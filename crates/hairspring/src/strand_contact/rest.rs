@@ -4,7 +4,7 @@ use super::{closest::closest, grid::Grid, hair::Hair};
 
 /// Share of the space at rest that two segments occupy [1]. It is below 1 so that rounding does not make them
 /// touch there.
-const TAKEN: f32 = 0.999;
+const OCCUPIED_SHARE: f32 = 0.999;
 
 /// Sets the radii of all segments, from strands at rest, and returns the largest. The radius is `radius_setting` [m],
 /// or half the mean distance to the nearest other strand if that is `None`, but at most half the segment's
@@ -30,7 +30,7 @@ pub fn find_radii(radius_setting: Option<f32>, hair: &mut Hair, grid: &mut Grid)
         segments.iter().map(|s| f64::from(nearest[*s as usize])).sum::<f64>() / segments.len().max(1) as f64;
     let radius = radius_setting.unwrap_or(0.5 * room as f32);
     for s in segments {
-        hair.radius[s as usize] = radius.min(0.5 * TAKEN * nearest[s as usize]);
+        hair.radius[s as usize] = radius.min(0.5 * OCCUPIED_SHARE * nearest[s as usize]);
     }
     radius
 }

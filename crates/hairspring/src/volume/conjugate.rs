@@ -15,11 +15,11 @@ pub const TOLERANCE: f64 = 0.05;
 
 /// Pressure, relative to the root mean square, below which a cell is softened when cells with negative
 /// pressure are released [1].
-const HARDLY: f32 = 0.1;
+const RELEASE_PRESSURE: f32 = 0.1;
 
 /// Maximum number of iterations of a solve. Effects that spread farther than this many cells are left to the
 /// next interval.
-pub const ITERATIONS: u32 = 24;
+pub const MAX_ITERATIONS: u32 = 24;
 
 /// A linear system and its solution. All arrays have the shape of the grid's nodes.
 #[derive(Default)]
@@ -180,7 +180,7 @@ impl Solve {
             self.sum(|s, k| f64::from(s.pressure[k]) * f64::from(s.pressure[k])),
             self.sum(|s, k| f64::from(u8::from(s.inverse_diagonal[k] > 0.0))),
         );
-        let hard = HARDLY * (square / cells.max(1.0)).sqrt() as f32;
+        let hard = RELEASE_PRESSURE * (square / cells.max(1.0)).sqrt() as f32;
         let parts = self.inverse_diagonal.par_chunks_mut(slab).zip(self.right.par_chunks_mut(slab));
         parts
             .zip(self.pressure.par_chunks_mut(slab).zip(self.compliance.par_chunks_mut(slab)))
@@ -214,7 +214,7 @@ impl Solve {
             return (0, 0.0);
         }
         let (mut energy, mut left) = (0.0, 1.0);
-        for iteration in 0..=ITERATIONS {
+        for iteration in 0..=MAX_ITERATIONS {
             // In the first iteration, the image is that of the initial pressures and is subtracted entirely.
             let alpha = match iteration {
                 0 => 1.0,
@@ -258,7 +258,7 @@ impl Solve {
                 }
             });
         }
-        (ITERATIONS, left)
+        (MAX_ITERATIONS, left)
     }
 
     /// Computes the flux of the pressures, with negative pressures clamped to 0.

@@ -20,7 +20,7 @@ pub const MAX_EXCESS: f32 = 1.0;
 /// Minimum time for a pressure wave to cross a cell, in intervals. The pressure is computed at the start of
 /// an interval and acts during it, so faster waves grow (Courant, Friedrichs, Lewy 1928). Diagonal waves are
 /// the most critical: √3.
-const CROSSING: f32 = 2.0;
+const MIN_CROSSING_TIME: f32 = 2.0;
 
 /// Computes the pressure of every cell, e ρ_least, with mass relative to the largest point's [1].
 pub fn pressures(field: &Field, excess: impl Fn(usize) -> f32 + Sync, pressures: &mut Vec<f32>) {
@@ -59,7 +59,7 @@ pub struct Push<'a> {
 impl<'a> Push<'a> {
     /// Creates the accelerations, see [`Push`].
     pub fn new(field: &Field, pressures: &'a [f32], speed: f32, cell: f32, dt: f32) -> Self {
-        let speed = speed.min(cell / (CROSSING * dt));
+        let speed = speed.min(cell / (MIN_CROSSING_TIME * dt));
         Self { pressures, corners: field.bounds.corners(), strength: speed * speed / (4.0 * cell) }
     }
 

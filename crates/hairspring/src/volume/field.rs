@@ -2,12 +2,12 @@
 
 use super::{
     grid_bounds::GridBounds,
-    splat::{NODE, REST_VOLUME_UNITS, Sums, Units},
+    splat::{REST_VOLUME_UNITS, Sums, Units, VALUES_PER_NODE},
 };
 use crate::parallel::prelude::*;
 
 /// Number of used values in an element of [`Field::push`].
-pub const TAKEN: usize = 9;
+pub const VALUES_PER_PUSH: usize = 9;
 pub const PUSH: usize = 12;
 
 /// Indices in an element of [`Field::push`] of the rows of the symmetric matrix.
@@ -60,9 +60,11 @@ impl Field {
             |(z, ((nodes, spread), rest_volumes))| {
                 let first = z * slab;
                 for (n, (node, spread)) in nodes.iter_mut().zip(spread).enumerate() {
-                    let mut sum = [0; NODE];
+                    let mut sum = [0; VALUES_PER_NODE];
                     for own in sums {
-                        let Some(own) = own.nodes[(first + n) * NODE..].first_chunk::<NODE>() else {
+                        let Some(own) =
+                            own.nodes[(first + n) * VALUES_PER_NODE..].first_chunk::<VALUES_PER_NODE>()
+                        else {
                             continue;
                         };
                         for (sum, own) in sum.iter_mut().zip(own) {

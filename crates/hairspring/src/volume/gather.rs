@@ -1,7 +1,7 @@
 //! Interpolates the grid at the points: one acceleration for each point, constant for the interval.
 
 use super::{
-    field::{BRAKE, PUSH, TAKEN},
+    field::{BRAKE, PUSH, VALUES_PER_PUSH},
     grid_bounds::{GridBounds, GridTransform, Placed},
     splat::Tiles,
 };
@@ -55,7 +55,7 @@ fn gather(
         for (at, (acceleration, push)) in state.iter().zip(&mut points) {
             transform.advance(&mut places, at);
             let placed = Placed::new(&places, bounds);
-            let mut taken = [[0.0; LANES]; TAKEN];
+            let mut taken = [[0.0; LANES]; VALUES_PER_PUSH];
             for lane in 0..LANES {
                 let cell = placed.cell[lane] as usize;
                 let mut sum = [0.0; PUSH];
@@ -66,7 +66,7 @@ fn gather(
                         sum[c] += low[c] * a + high[c] * b;
                     }
                 }
-                (0..TAKEN).for_each(|c| taken[c][lane] = sum[c]);
+                (0..VALUES_PER_PUSH).for_each(|c| taken[c][lane] = sum[c]);
             }
             let (mut sound, mut now) = (placed.inside, [Row::default(); 3]);
             let [Row(vx), Row(vy), Row(vz)] = &at[state::V..].first_chunk::<3>().expect("three rows");

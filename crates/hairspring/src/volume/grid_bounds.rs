@@ -135,6 +135,22 @@ pub fn nearest(x: f32) -> i32 {
     ((x + ROUND).to_bits() as i32).wrapping_sub(ROUND.to_bits() as i32)
 }
 
+/// Returns the coordinate of the lowest corner of the cell that contains `x`, which must be below 2²² in absolute
+/// value. A point on a node may be assigned to the previous cell; its weight is still entirely at that node.
+#[inline(always)]
+pub fn lowest_corner(x: f32) -> f32 {
+    (x - 0.5 + ROUND) - ROUND
+}
+
+/// Returns the trilinear weights of a point at the corners of its cell, in the order of [`GridBounds::corners`], from
+/// its position in the cell [1].
+#[inline(always)]
+pub fn trilinear([x, y, z]: [f32; 3]) -> [f32; 8] {
+    let (u, v, w) = (1.0 - x, 1.0 - y, 1.0 - z);
+    let [a, b, c, d] = [v * w, y * w, v * z, y * z];
+    [u * a, x * a, u * b, x * b, u * c, x * c, u * d, x * d]
+}
+
 /// Lowest and highest coordinate of a point inside, as distances from the two ends of the bounds [cells]. Hair that the
 /// bounds were made for is at least 2 cells from either; a point nearer to the ring is one that they do not cover.
 const MARGIN: f32 = 1.5;
@@ -154,21 +170,15 @@ impl Placed {
                 let low = if at > MARGIN { at } else { MARGIN };
                 let clamped = if low < last { low } else { last };
                 inside[lane] = if at == clamped { inside[lane] } else { 0.0 };
-                // A point on a node may be assigned to the previous cell; its weight is still entirely at
-                // that node.
-                let floor = (clamped - 0.5 + ROUND) - ROUND;
+                let floor = lowest_corner(clamped);
                 f[k][lane] = clamped - floor;
                 cell[lane] += nearest(floor) * strides[k];
             }
         }
         let mut weights = [[0.0; LANES]; 8];
         for lane in 0..LANES {
-            let [x, y, z] = [f[0][lane], f[1][lane], f[2][lane]];
-            let (u, v, w) = (1.0 - x, 1.0 - y, 1.0 - z);
-            for (k, yz) in [v * w, y * w, v * z, y * z].into_iter().enumerate() {
-                weights[2 * k][lane] = u * yz;
-                weights[2 * k + 1][lane] = x * yz;
-            }
+            let of_lane = trilinear([f[0][lane], f[1][lane], f[2][lane]]);
+            (0..8).for_each(|k| weights[k][lane] = of_lane[k]);
         }
         Self { cell, weights, inside }
     }

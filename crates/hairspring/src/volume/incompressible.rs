@@ -22,11 +22,11 @@ use glam::Vec3;
 
 /// Fill at which a cell begins to have pressure, and at which it is hard [1]. Both are below the random
 /// variation of a full cell, see `rest::POINTS_A_CELL`.
-const FULL: [f32; 2] = [0.9, 0.95];
+const FULL_CELL_FILL: [f32; 2] = [0.9, 0.95];
 
-/// The same thresholds for the smallest mass at a corner of the cell relative to the mean of its eight [1]. A
-/// cell with less is at the surface.
-const LEAST_MASS: [f32; 2] = [0.025, 0.05];
+/// Thresholds as [`FULL_CELL_FILL`], for the smallest mass at a corner of the cell relative to the mean of its eight
+/// [1]. A cell with less is at the surface.
+const MIN_CORNER_MASS: [f32; 2] = [0.025, 0.05];
 
 /// Returns the hardness of a cell for a value `x`, 0 to 1. The ramp prevents the rounding of a position from
 /// deciding whether the cell has pressure.
@@ -101,8 +101,8 @@ impl Projection {
             let masses = corners.map(|k| field.nodes[cell + k][3]);
             let least = masses.iter().copied().fold(f32::INFINITY, f32::min);
             let mean = 0.125 * masses.iter().sum::<f32>();
-            let hard =
-                hardness(field.fill[cell], FULL) * hardness(least / mean.max(f32::MIN_POSITIVE), LEAST_MASS);
+            let hard = hardness(field.fill[cell], FULL_CELL_FILL)
+                * hardness(least / mean.max(f32::MIN_POSITIVE), MIN_CORNER_MASS);
             if hard <= 0.0 {
                 return None;
             }

@@ -27,7 +27,7 @@
 //! - Step 3, the volume correction, comes before step 2 instead of after it. It is part of the implicit
 //!   solve, so it stretches no strand.
 //! - Step 4, contact between individual strands where the grid is too coarse, so that sheets of straight hair
-//!   do not pass through each other, is `neighbours`, which can be enabled in addition.
+//!   do not pass through each other, is `strand_contact`, which can be enabled in addition.
 //! - Contact with the body and step 5, the new positions, end every substep as they do without the volume.
 //!
 //! # Cost
@@ -51,6 +51,7 @@ mod gather;
 mod grid_bounds;
 mod incompressible;
 mod rest;
+mod rest_fill;
 mod sample;
 mod splat;
 #[cfg(test)]
@@ -70,7 +71,7 @@ use field::Field;
 use glam::{Mat3, Vec3};
 use grid_bounds::{GridBounds, GridTransform};
 use incompressible::Projection;
-use rest::{Rest, RestSpacing};
+use rest::{Rest, RestCells, RestSpacing, StrandsAtRest};
 pub(crate) use sample::Density;
 use splat::{Extent, OwnRows, Sums, Tiles, Units, own};
 
@@ -79,10 +80,13 @@ use splat::{Extent, OwnRows, Sums, Tiles, Units, own};
 const MAX_NODES: f32 = (1 << 21) as f32;
 
 /// Number of nodes beyond the hair, along each axis [cells].
-const RING: f32 = 6.0;
+const RING_NODES: f32 = 6.0;
 
 /// Maximum distance of a cell from the anchor [cells], where single precision resolves a quarter of a cell.
-const FARTHEST: f32 = (1 << 22) as f32;
+const MAX_DISTANCE: f32 = (1 << 22) as f32;
+
+/// Smallest mean segment length that determines a cell [m].
+const MIN_SEGMENT: f32 = 1e-4;
 
 /// Maximum number of threads that sum separately: each has a grid, and the grids must be added up.
 const MAX_GRIDS: usize = 8;
@@ -129,9 +133,8 @@ pub struct VolumeReport {
     pub cell_enlarged: bool,
     /// Number of grid nodes in the last interval.
     pub nodes: usize,
-    /// Volume of the hair at the start of the last interval relative to that at rest [1]. The volume is that
-    /// of its cells as far as they are filled, each at most once: where strands are compressed into each
-    /// other's rest volume, it is lost.
+    /// Volume of the hair at the start of the last interval relative to that at rest [1]. The volume is
+    /// Σ min(fill, 1) over the cells, relative to rest. Overlapping strands lose volume.
     pub volume_ratio: f64,
 }
 
@@ -185,7 +188,7 @@ impl Volume {
             })
             .collect();
         let tiles = Tiles { firsts: &at.firsts, roots: at.roots, state: at.state, own: &own };
-        let rest_spacing = RestSpacing::measure(&tiles, &at.anchor, at.segment.max(1e-4));
+        let rest_spacing = RestSpacing::measure(&tiles, &at.anchor, at.segment.max(MIN_SEGMENT));
         let requested = settings.cell.unwrap_or(rest_spacing.cell);
         // Hair reaches no farther from its roots than its length.
         let extent = Extent::of(&tiles, &GridTransform::new(&at.anchor, 1.0), Vec3::ZERO);
@@ -194,8 +197,9 @@ impl Volume {
         let mut cell = requested.max((size.element_product() / (0.5 * MAX_NODES)).cbrt());
         // If hair is in two places far apart, most of the grid is the ring.
         let farthest = reach.0.abs().max(reach.1.abs()).max_element();
-        while (size / cell + RING + 1.0).element_product() > MAX_NODES || farthest / cell > FARTHEST {
-            cell *= 1.1;
+        while (size / cell + RING_NODES + 1.0).element_product() > MAX_NODES || farthest / cell > MAX_DISTANCE
+        {
+            cell *= rest::CELL_GROWTH;
         }
         let masses = || own.iter().flat_map(|o| o[own::MASS].0).filter(|m| *m > 0.0);
         let (points, total) = (masses().count(), masses().map(f64::from).sum::<f64>());
@@ -224,8 +228,11 @@ impl Volume {
         };
         volume.reserve();
         let work = (&mut volume.sums[0], &mut volume.field);
-        let cells = (&at.anchor, cell, rest_spacing.cell);
-        volume.rest.measure((at.roots, at.state, &volume.firsts), &mut own, cells, work);
+        let strands = StrandsAtRest { roots: at.roots, state: at.state, firsts: &volume.firsts };
+        // The extent of the hair in these cells is at most twice the distance.
+        let fine = rest_spacing.cell.max(2.0 * farthest / MAX_DISTANCE);
+        let cells = RestCells { anchor: &at.anchor, grid: cell, fine };
+        volume.rest.measure(strands, &mut own, cells, work);
         volume.own = own;
         volume.taken_up = [fill_ratio(&volume.field.fill); 2];
         Some(volume)
@@ -289,13 +296,13 @@ impl Volume {
         let reach = rest::reach((extent.roots[0], extent.roots[1]), self.length / self.cell);
         let [mut lo, mut hi] = within([rest[0].min(reach.0), rest[1].max(reach.1)]);
         let far = lo.abs().max(hi.abs()).max_element();
-        if (hi - lo + RING).element_product() > MAX_NODES || far > FARTHEST {
+        if (hi - lo + RING_NODES).element_product() > MAX_NODES || far > MAX_DISTANCE {
             [lo, hi] = within(rest);
         }
         GridBounds::around(lo, hi)
     }
 
-    /// Begins a frame, in which nothing of this acts yet. Each interval's pressures start from those of the
+    /// Begins a frame and clears the accelerations. Each interval's pressures start from those of the
     /// previous interval, except for the first of a frame, so that a frame depends only on positions and
     /// velocities.
     pub fn begin_frame(&mut self) {
@@ -368,7 +375,7 @@ impl Volume {
         let turn = Mat3::from_quat(anchor.rotation);
         let back = turn.transpose();
         let to_lattice = |n: usize, node: &[f32; 4]| {
-            let place = anchor.point(bounds.place(n).as_vec3() * cell);
+            let place = anchor.transform_point(bounds.place(n).as_vec3() * cell);
             match solid(colliders, place) {
                 Some(v) => (back * v, true),
                 None => (back * Vec3::new(node[0], node[1], node[2]), false),

@@ -2,7 +2,8 @@
 
 use super::{
     field::Field,
-    grid_bounds::{GridBounds, GridTransform, Placed},
+    grid_bounds::{GridBounds, GridTransform},
+    rest_fill::{RestFill, point},
     splat::{Extent, OwnRows, REST_VOLUME_UNITS, Sums, Tiles, Units, own},
 };
 use crate::parallel::prelude::*;
@@ -25,6 +26,16 @@ const MAX_REST_VOLUME: f32 = 4.0;
 /// through the cells, and is hardly visible.
 const SLACK: f32 = 1.1;
 
+/// Factor by which a cell grows until it holds enough points [1].
+pub const CELL_GROWTH: f32 = 1.1;
+
+/// Largest number of tries at a cell size: the last cell is 400 times as large as the first.
+const MAX_TRIES: usize = 64;
+
+/// Bits of a cell's coordinate in its key. Three coordinates fit in 64 bits. Coordinates that differ by a multiple of
+/// 2²¹ cells share a key.
+const KEY_BITS: u32 = 21;
+
 /// The distribution of hair at rest.
 pub struct RestSpacing {
     /// Smallest cell that holds [`POINTS_A_CELL`] points on average and is no smaller than the mean segment
@@ -43,7 +54,7 @@ impl RestSpacing {
     pub fn measure(tiles: &Tiles, anchor: &RigidTransform, segment: f32) -> Self {
         let (mut cell, mut spacing) = (segment, segment);
         let mut occupied: Vec<u64> = Vec::new();
-        for _ in 0..64 {
+        for _ in 0..MAX_TRIES {
             let transform = GridTransform::new(anchor, cell);
             occupied.clear();
             for (roots, state, own) in tiles.iter() {
@@ -51,8 +62,9 @@ impl RestSpacing {
                 for (at, own) in state.iter().zip(own) {
                     transform.advance(&mut places, at);
                     for lane in (0..LANES).filter(|lane| own[own::MASS].0[*lane] > 0.0) {
-                        let key = |k: usize| (places[k][lane].floor() as i64 & 0x1f_ffff) as u64;
-                        occupied.push(key(2) << 42 | key(1) << 21 | key(0));
+                        let mask = (1 << KEY_BITS) - 1;
+                        let key = |k: usize| (places[k][lane].floor() as i64 & mask) as u64;
+                        occupied.push(key(2) << (2 * KEY_BITS) | key(1) << KEY_BITS | key(0));
                     }
                 }
             }
@@ -65,10 +77,30 @@ impl RestSpacing {
             if points >= POINTS_A_CELL * count as f32 || count <= 1 {
                 break;
             }
-            cell *= 1.1;
+            cell *= CELL_GROWTH;
         }
         Self { cell, spacing }
     }
+}
+
+/// The strands whose rest volumes are computed.
+pub struct StrandsAtRest<'a> {
+    /// Shape `[tiles]`.
+    pub roots: &'a [RootRows],
+    /// Shape `[points]` of all tiles.
+    pub state: &'a [StateRows],
+    /// Index of each tile's first point, followed by the end.
+    pub firsts: &'a [u32],
+}
+
+/// The cells that hair at rest fills.
+pub struct RestCells<'a> {
+    /// Pose of the anchor, in whose space the cells are.
+    pub anchor: &'a RigidTransform,
+    /// Edge of the grid's cells [m].
+    pub grid: f32,
+    /// Edge of the cells that hair at rest occupies [m].
+    pub fine: f32,
 }
 
 /// Fill of the cells at rest, where that is above 1.
@@ -87,8 +119,8 @@ impl Rest {
     }
 
     /// Computes the rest volume of every point, such that hair at rest fills the cells that it occupies.
-    /// These are cells of `fine_cell` [m], or of the grid if its `cell` [m] is smaller. Then stores the fill of
-    /// the grid's cells at rest.
+    /// These are cells of `cells.fine` [m], or of the grid if they are smaller. Then stores the fill of the grid's
+    /// cells at rest. `sums` and `field` are working memory.
     ///
     /// A rest volume should be the space between strands, wherever the bundle lies in the grid. Rest volumes
     /// are therefore not chosen to fill larger cells, which hair occupies only partly. For the same reason
@@ -96,28 +128,26 @@ impl Rest {
     /// cells at the surface are as full as those inside.
     pub fn measure(
         &mut self,
-        tiles: (&[RootRows], &[StateRows], &[u32]),
+        StrandsAtRest { roots, state, firsts }: StrandsAtRest,
         own: &mut [OwnRows],
-        (anchor, cell, fine_cell): (&RigidTransform, f32, f32),
+        RestCells { anchor, grid: cell, fine }: RestCells,
         (sums, field): (&mut Sums, &mut Field),
     ) {
-        let (roots, state, firsts) = tiles;
-        let fine = cell.min(fine_cell);
+        let fine = cell.min(fine);
         let transform = GridTransform::new(anchor, fine);
         // Volume of a fine cell in units of the grid's cell.
         let share = (fine / cell).powi(3);
-        let Some(bounds) = fill(&Tiles { firsts, roots, state, own }, &transform, sums, field) else {
-            return;
-        };
+        let tiles = Tiles { firsts, roots, state, own };
+        let Some(GridBounds { lo, .. }) = bounds(&tiles, &transform) else { return };
+        let fill_at_rest = RestFill::new(&tiles, &transform, lo);
         for (rows, first) in roots.iter().zip(firsts.windows(2)) {
-            let mut places = transform.roots(rows, bounds.lo);
+            let mut places = transform.roots(rows, lo);
             for i in first[0] as usize..first[1] as usize {
                 transform.advance(&mut places, &state[i]);
-                let placed = Placed::new(&places, &bounds);
-                let rest_volume = &mut own[i][own::REST_VOLUME].0;
-                for (rest_volume, cell) in rest_volume.iter_mut().zip(placed.cell) {
-                    let fill = field.fill[cell as usize];
-                    if *rest_volume > 0.0 && fill > 0.0 {
+                let rest_volumes = own[i][own::REST_VOLUME].0.iter_mut().enumerate();
+                for (lane, rest_volume) in rest_volumes.filter(|(_, rest_volume)| **rest_volume > 0.0) {
+                    let fill = fill_at_rest.at(point(&places, lane));
+                    if fill > 0.0 {
                         *rest_volume = ((*rest_volume / fill).min(MAX_REST_VOLUME * REST_VOLUME_UNITS)
                             * share)
                             .round()
@@ -135,13 +165,15 @@ impl Rest {
     }
 }
 
+/// Returns the bounds of the hair, or `None` if there is none.
+fn bounds(tiles: &Tiles, transform: &GridTransform) -> Option<GridBounds> {
+    let extent = Extent::of(tiles, transform, Vec3::ZERO);
+    (extent.lo.is_finite() && extent.hi.is_finite()).then(|| GridBounds::around(extent.lo, extent.hi))
+}
+
 /// Computes the fill of the cells. Returns the bounds of the hair, or `None` if there is none.
 fn fill(tiles: &Tiles, transform: &GridTransform, sums: &mut Sums, field: &mut Field) -> Option<GridBounds> {
-    let extent = Extent::of(tiles, transform, Vec3::ZERO);
-    if !(extent.lo.is_finite() && extent.hi.is_finite()) {
-        return None;
-    }
-    let bounds = GridBounds::around(extent.lo, extent.hi);
+    let bounds = bounds(tiles, transform)?;
     // Only the rest volumes are used here, so any unit of mass will do.
     let units = Units { mass: 1.0, momentum: 0.0, energy: 0.0, speed: 0.0, carried: Vec3::ZERO };
     sums.clear(bounds.nodes());

@@ -46,7 +46,7 @@ impl<'a> Density<'a> {
 
     /// Returns the position of a node in world space [m].
     pub fn place(&self, node: usize) -> Vec3 {
-        self.anchor.point(self.field.bounds.place(node).as_vec3() * self.cell)
+        self.anchor.transform_point(self.field.bounds.place(node).as_vec3() * self.cell)
     }
 
     /// Returns whether `place` in world space is inside the grid.
@@ -67,7 +67,7 @@ impl<'a> Density<'a> {
 
     /// Transforms `place` from world space to cells from the lowest node of the bounds.
     fn on_lattice(&self, place: Vec3) -> Vec3 {
-        self.anchor.inverse_point(place) / self.cell - self.field.bounds.lo.as_vec3()
+        self.anchor.inverse_transform_point(place) / self.cell - self.field.bounds.lo.as_vec3()
     }
 
     /// Returns the index of the lowest node of the cell that contains `at`, and the offset of `at` from it;

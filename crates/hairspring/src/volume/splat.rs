@@ -28,7 +28,7 @@ pub type OwnRows = [Row; own::ROWS];
 pub const REST_VOLUME_UNITS: f32 = 524288.0;
 
 /// Limit of the speed [m/s], so that a single unstable strand does not reduce the precision of the others.
-const FASTEST: f32 = 50.0;
+const MAX_SPEED: f32 = 50.0;
 
 /// A range of consecutive tiles.
 #[derive(Clone, Copy)]
@@ -75,7 +75,7 @@ pub struct Extent {
     pub hi: Vec3,
     /// Lowest and highest corner of the roots' box [cells].
     pub roots: [Vec3; 2],
-    /// Largest component of a velocity relative to `carried`, at most [`FASTEST`] [m/s].
+    /// Largest component of a velocity relative to `carried`, at most [`MAX_SPEED`] [m/s].
     pub speed: f32,
 }
 
@@ -136,7 +136,7 @@ impl Extent {
         }
         let least = |row: [f32; LANES]| row.into_iter().fold(f32::INFINITY, f32::min);
         let most = |row: [f32; LANES]| row.into_iter().fold(f32::NEG_INFINITY, f32::max);
-        Self { lo: lo.map(least).into(), hi: hi.map(most).into(), roots, speed: most(speed).min(FASTEST) }
+        Self { lo: lo.map(least).into(), hi: hi.map(most).into(), roots, speed: most(speed).min(MAX_SPEED) }
     }
 
     /// Returns the extent of the points of both.
@@ -192,19 +192,19 @@ pub struct Sums {
 }
 
 /// Number of values per node.
-pub const NODE: usize = 8;
+pub const VALUES_PER_NODE: usize = 8;
 
 impl Sums {
     /// Reserves memory for at most `nodes` nodes.
     pub fn reserve(&mut self, nodes: usize) {
-        self.nodes.reserve_exact((nodes * NODE).saturating_sub(self.nodes.len()));
+        self.nodes.reserve_exact((nodes * VALUES_PER_NODE).saturating_sub(self.nodes.len()));
         self.rest_volumes.reserve_exact(nodes.saturating_sub(self.rest_volumes.len()));
     }
 
     /// Resizes to `nodes` nodes and sets all sums to 0.
     pub fn clear(&mut self, nodes: usize) {
         self.nodes.clear();
-        self.nodes.resize(nodes * NODE, 0);
+        self.nodes.resize(nodes * VALUES_PER_NODE, 0);
         self.rest_volumes.clear();
         self.rest_volumes.resize(nodes, 0);
     }
@@ -227,7 +227,7 @@ impl Sums {
                         there[lane] = if v[lane] * 0.0 == 0.0 { there[lane] } else { 0.0 };
                     }
                 }
-                let mut counted = [[0.0; LANES]; NODE];
+                let mut counted = [[0.0; LANES]; VALUES_PER_NODE];
                 let mut rest_volume = [0.0; LANES];
                 for lane in 0..LANES {
                     counted[3][lane] = own[own::MASS].0[lane] * there[lane] * units.mass;
@@ -252,19 +252,20 @@ impl Sums {
                 }
                 for lane in 0..LANES {
                     let cell = placed.cell[lane] as usize;
-                    let point: [f32; NODE] = std::array::from_fn(|k| counted[k][lane]);
+                    let point: [f32; VALUES_PER_NODE] = std::array::from_fn(|k| counted[k][lane]);
                     for (k, corner) in [0, row, slab, both].into_iter().enumerate() {
-                        let Some(pair) =
-                            self.nodes[(cell + corner) * NODE..].first_chunk_mut::<{ 2 * NODE }>()
+                        let Some(pair) = self.nodes[(cell + corner) * VALUES_PER_NODE..]
+                            .first_chunk_mut::<{ 2 * VALUES_PER_NODE }>()
                         else {
                             continue;
                         };
                         let [a, b] = [placed.weights[2 * k][lane], placed.weights[2 * k + 1][lane]];
-                        for c in 0..NODE {
+                        for c in 0..VALUES_PER_NODE {
                             pair[c] = pair[c].wrapping_add(nearest(point[c] * a));
                         }
-                        for c in 0..NODE {
-                            pair[NODE + c] = pair[NODE + c].wrapping_add(nearest(point[c] * b));
+                        for c in 0..VALUES_PER_NODE {
+                            pair[VALUES_PER_NODE + c] =
+                                pair[VALUES_PER_NODE + c].wrapping_add(nearest(point[c] * b));
                         }
                         for (sum, weight) in self.rest_volumes[cell + corner..].iter_mut().zip([a, b]) {
                             *sum = sum.saturating_add(nearest(rest_volume[lane] * weight) as u32);

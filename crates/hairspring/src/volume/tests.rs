@@ -290,3 +290,30 @@ fn points_stretched_beyond_their_reach_do_not_count() {
         }
     }
 }
+
+#[test]
+fn two_bundles_apart_on_a_diagonal_take_a_bounded_grid_and_rest_as_one_does() {
+    for method in METHODS {
+        let alone = Bundle::new().volume(method);
+        let mut bundle = Bundle::new();
+        // The second half of the strands is three meters away along each axis.
+        let tiles = bundle.roots.len();
+        for rows in &mut bundle.roots[tiles / 2..] {
+            rows[root::END..root::END + 3]
+                .iter_mut()
+                .for_each(|row| row.0.iter_mut().for_each(|x| *x += 3.0));
+        }
+        let volume = bundle.volume(method);
+        assert!(volume.report().cell_enlarged);
+        let most = super::MAX_NODES as usize;
+        let nodes = volume.sums.iter().map(|sums| sums.rest_volumes.capacity()).max().unwrap();
+        assert!(nodes <= most, "{method:?}: {nodes} nodes");
+        // The volume of the hair does not depend on the cells of the grid, except where the two halves were in contact.
+        let filled = |volume: &Volume| -> f32 {
+            let all = volume.own.iter().flat_map(|own| own[super::own::REST_VOLUME].0);
+            all.sum::<f32>() / super::splat::REST_VOLUME_UNITS * volume.cell.powi(3)
+        };
+        let ratio = filled(&volume) / filled(&alone);
+        assert!((0.95..1.15).contains(&ratio), "{method:?}: {ratio} of the volume of one bundle");
+    }
+}

@@ -58,7 +58,7 @@ fn outlines_lie_on_their_shapes() {
         let found = outline(shape.clone(), pose);
         assert_eq!(found.len(), lines, "{shape:?}");
         for end in found.iter().flat_map(|line| [line.a, line.b]) {
-            let off = shape.distance(pose.inverse_point(end)).abs();
+            let off = shape.distance(pose.inverse_transform_point(end)).abs();
             assert!(off < 1e-6, "{shape:?}: {end} is {off} m from the surface");
         }
     }

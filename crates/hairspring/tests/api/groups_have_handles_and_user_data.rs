@@ -1,4 +1,4 @@
-//! Promise: groups of strands have handles, and data of the user that the simulation keeps.
+//! Promise: groups of strands have handles and user data, which the simulation keeps.
 
 use crate::support::groom;
 use hairspring::{

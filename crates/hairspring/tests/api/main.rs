@@ -1,5 +1,6 @@
 //! Promises of the library's interface. Each file is one promise.
 
+mod accepted_values_do_not_overflow;
 mod builder_refuses_what_cannot_be_simulated;
 mod custom_colliders_match_built_in_ones;
 mod custom_forces_match_built_in_ones;

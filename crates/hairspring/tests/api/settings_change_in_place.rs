@@ -111,7 +111,7 @@ fn other_changes_are_refused_without_effect() {
     let falling = Solver { sag_free: false, ..Solver::default() };
     for solver in [Solver::default(), falling] {
         let error = simulation.update_settings(&[base()], solver, Vec3::NAN).unwrap_err();
-        assert_eq!(error.to_string(), "`gravity` must be three finite numbers [m/s²]");
+        assert_eq!(error.to_string(), "`gravity` must be three numbers from -10000 to 10000 [m/s²]");
     }
     assert_eq!(later(&mut simulation), unchanged, "an invalid value");
 }

@@ -7,7 +7,7 @@
 use glam::Vec3;
 use hairspring::{
     body::{Mesh, NearestTree},
-    collide::{SignedDistanceField, Voxelizer},
+    collide::{SignedDistanceField, Voxelizer, VoxelizerInput},
 };
 use std::f32::consts::{PI, TAU};
 
@@ -43,7 +43,8 @@ fn nodes_near_the_surface_have_exact_distance_and_motion() {
     let mut triangles = mesh.triangles.clone();
     triangles.push([40, 40, 40]);
     let (mut grid, cell) = (SignedDistanceField::default(), 0.011);
-    Voxelizer::default().update(&mut grid, &mesh.positions, Some(&before), &triangles, None, cell);
+    let input = VoxelizerInput::new(&mesh.positions, &triangles, cell);
+    Voxelizer::default().update(&mut grid, &VoxelizerInput { previous_positions: Some(&before), ..input });
     let mut count = 0;
     for (i, d) in grid.distances().iter().enumerate() {
         let (i, size) = (i as u32, grid.size());

@@ -82,7 +82,7 @@ fn only_fast_thin_colliders_near_hair_shorten_substeps() {
         let place = |translation| RigidTransform { translation, rotation: turned };
         let colliders = [MovingCollider::new(shape, place(start), place(end))];
         for root in &mut roots {
-            root.translation = anchor.point(Vec3::new(root.translation.x, 0.0, 0.0));
+            root.translation = anchor.transform_point(Vec3::new(root.translation.x, 0.0, 0.0));
         }
         step(&mut simulation, anchor, &roots, &colliders).substeps
     };

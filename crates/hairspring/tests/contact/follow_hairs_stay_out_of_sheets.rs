@@ -31,7 +31,7 @@ fn scene(x: f32) -> (Arc<Groom>, MovingCollider) {
     let pose =
         RigidTransform { rotation: Quat::from_rotation_z(0.7), translation: Vec3::new(0.2, -0.3, 0.1) };
     let corners = [(0.02, -0.1), (-0.2, -0.1), (-0.2, 0.1), (0.02, 0.1)]
-        .map(|(y, z)| pose.inverse_point(Vec3::new(x, y, z)));
+        .map(|(y, z)| pose.inverse_transform_point(Vec3::new(x, y, z)));
     let shell = ThinShell::new(&corners, &[[0, 1, 2], [0, 2, 3]], THICKNESS);
     (
         Arc::new(Groom::from_strands((0..STRANDS).map(strand), 35e-6)),

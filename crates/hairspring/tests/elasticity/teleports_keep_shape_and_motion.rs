@@ -67,7 +67,7 @@ impl Head {
 
     /// The points in the frame of the head [m].
     fn local_points(&self) -> Vec<Vec3> {
-        points(&self.simulation).iter().map(|p| self.pose.inverse_point(*p)).collect()
+        points(&self.simulation).iter().map(|p| self.pose.inverse_transform_point(*p)).collect()
     }
 }
 
@@ -107,10 +107,10 @@ fn motion_continues_after_a_teleport() {
             if frame == 30 {
                 moved = other_place();
                 there.simulation.teleport(moved);
-                there.pose = moved.after(&there.pose);
+                there.pose = moved * there.pose;
             }
             here.step(sway(frame));
-            there.step(moved.after(&sway(frame)));
+            there.step(moved * sway(frame));
         }
         // Rounding changes hair that makes and breaks contact by less than 0.1 mm in half a second.
         let difference = farthest(&here.local_points(), &there.local_points());
@@ -129,7 +129,7 @@ fn a_jump_is_teleported_automatically() {
         }
         // Hair continues to swing, as if the head had stopped.
         here.step(sway(29));
-        there.step(other_place().after(&sway(29)));
+        there.step(other_place() * sway(29));
         let difference = farthest(&here.local_points(), &there.local_points());
         assert!(difference < 1e-4, "{model:?}, {integrator:?}, {volume:?}: {difference} m in the jump");
     }
@@ -150,7 +150,7 @@ fn fast_motion_is_not_mistaken_for_a_jump() {
         farthest(&carried.local_points(), &felt.local_points()) > 0.05,
         "hair was not carried along in the jump"
     );
-    let swaying = |frame: u32| ride(frame).after(&sway(frame));
+    let swaying = |frame: u32| ride(frame) * sway(frame);
     for frame in 2..120 {
         carried.step(swaying(frame));
         felt.step(swaying(frame));

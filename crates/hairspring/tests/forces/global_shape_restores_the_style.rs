@@ -169,7 +169,7 @@ fn the_global_shape_moves_with_the_head() {
     let (mut worst, mut last) = (0.0f32, 0.0f32);
     for frame in 1..=180 {
         brush.step(at(frame));
-        let style: Vec<Vec3> = brush.groom.points.iter().map(|p| at(frame).point(*p)).collect();
+        let style: Vec<Vec3> = brush.groom.points.iter().map(|p| at(frame).transform_point(*p)).collect();
         last = farthest(&style, &brush.points);
         worst = worst.max(last);
     }

@@ -103,7 +103,8 @@ fn bound_hair_stays_in_the_ring() {
             curtain.step(pose);
             longest = longest.max(curtain.simulation.measure(&[]).stretch_max);
             let distance_out = |(s, i): &(u32, u32)| {
-                let p = pose.inverse_point(curtain.points[*s as usize * POINTS + *i as usize]) - RING.center;
+                let p = pose.inverse_transform_point(curtain.points[*s as usize * POINTS + *i as usize])
+                    - RING.center;
                 p.reject_from_normalized(Vec3::Y).length() - RING.radius
             };
             let worst = held.iter().map(distance_out).fold(f32::MIN, f32::max);
@@ -124,7 +125,8 @@ fn bound_hair_stays_in_the_ring() {
             assert_eq!(curtain.simulation.measure(&[]).non_finite, 0);
         }
         let distance_out = |(s, i): &(u32, u32)| {
-            let p = away.inverse_point(curtain.points[*s as usize * POINTS + *i as usize]) - RING.center;
+            let p = away.inverse_transform_point(curtain.points[*s as usize * POINTS + *i as usize])
+                - RING.center;
             p.reject_from_normalized(Vec3::Y).length() - RING.radius
         };
         let worst = held.iter().map(distance_out).fold(f32::MIN, f32::max);

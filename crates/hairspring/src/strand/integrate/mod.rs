@@ -179,15 +179,15 @@ fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u
 
 /// How long a strand still counts as touching after its last contact [s]. Found by trial: every value from
 /// 0.05 to 0.25 keeps hair on thin rods.
-const TOUCHED: f32 = 0.1;
+const CONTACT_MEMORY: f32 = 0.1;
 
 /// Speed relative to the root below which a strand in contact is coming to rest [m/s]. Strands tremble at up to 0.01
 /// where all of a force is carried.
-const SLOW: f32 = 0.02;
+const RESTING_SPEED: f32 = 0.02;
 
 /// Returns the share of the force of a stretch spring that becomes tension in a strand in contact [1]: from [`CARRIED`]
-/// at rest to 1 where its fastest point moves at [`SLOW`] relative to the root, which moved by `moved` [m] in the substep
-/// of `h` [s].
+/// at rest to 1 where its fastest point moves at [`RESTING_SPEED`] relative to the root, which moved by `moved` [m] in
+/// the substep of `h` [s].
 #[inline(always)]
 fn carried<S: Simd>(simd: S, moved: V3<S>, h: f32, tile: &Tile) -> F<S> {
     let root = moved * F::splat(simd, 1.0 / h);
@@ -197,11 +197,11 @@ fn carried<S: Simd>(simd: S, moved: V3<S>, h: f32, tile: &Tile) -> F<S> {
         most = most.max(v.dot(v));
     }
     let one = F::<S>::splat(simd, 1.0);
-    let rests = most.mul_add(-1.0 / (SLOW * SLOW), one).max(0.0);
+    let rests = most.mul_add(-1.0 / (RESTING_SPEED * RESTING_SPEED), one).max(0.0);
     rests.mul_add(CARRIED - 1.0, one)
 }
 
-/// Returns the strands that touch a collider or are gripped, or did so within the last [`TOUCHED`] seconds;
+/// Returns the strands that touch a collider or are gripped, or did so within the last [`CONTACT_MEMORY`] seconds;
 /// all strands if any strands touch each other.
 ///
 /// A contact may push a point away, and the point soon returns. In between, its motion is damped as in
@@ -222,7 +222,7 @@ fn touching<S: Simd>(simd: S, frame: &FrameContext, colliders: &[ColliderPose], 
     }
     let zero = F::<S>::splat(simd, 0.0);
     let left = (load(simd, tile.contact_age) - frame.h).max(0.0);
-    let left = most.simd_gt(zero).select(F::splat(simd, TOUCHED), left);
+    let left = most.simd_gt(zero).select(F::splat(simd, CONTACT_MEMORY), left);
     store(left, tile.contact_age);
     most.simd_gt(zero) | left.simd_gt(zero)
 }

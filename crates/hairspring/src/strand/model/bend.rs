@@ -91,8 +91,8 @@ pub fn transport<S: Simd>(normal: V3<S>, u0: V3<S>, u1: V3<S>) -> V3<S> {
     n * (n.dot(n).mul_add(-0.5, F::splat(scale.simd, 1.5)).max(0.5))
 }
 
-/// The same for one strand in double precision, with unit length. Returns the normal itself where the strand
-/// is folded back on itself.
+/// Parallel transport of a frame's normal for one strand in double precision, with unit length. Returns the normal
+/// itself where the strand is folded back on itself.
 pub fn transport_normal(normal: DVec3, t0: DVec3, t1: DVec3) -> DVec3 {
     let sum = t0 + t1;
     let scale = normal.dot(t1) / (0.5 * sum.length_squared()).max(f64::from(FOLDED));

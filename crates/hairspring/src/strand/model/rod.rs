@@ -77,7 +77,7 @@ pub fn curved<S: Simd>(along: F<S>) -> F<S> {
     along.mul_add(CURVED, one).max(MAX_CURVED)
 }
 
-/// The same for one joint in double precision.
+/// Factor of a joint's twisting stiffness for natural curvature, for one joint in double precision; see [`curved`].
 pub fn curved_joint(along: f64) -> f64 {
     (1.0 + f64::from(CURVED) * along).max(f64::from(MAX_CURVED))
 }

@@ -88,7 +88,7 @@ pub const CARRIED: f32 = 0.3;
 /// rest.
 pub const SIDEWAYS: f32 = 0.143;
 
-/// The same with BDF2, which keeps its second order with the whole displacement [1].
+/// Minimum share γ with BDF2, which keeps its second order with the whole displacement [1].
 pub const SIDEWAYS_BDF2: f32 = 1.0;
 
 /// Lateral stiffness T/ℓ, in units of m/h², above which the whole predicted displacement counts [1]: γ is 1
@@ -96,12 +96,13 @@ pub const SIDEWAYS_BDF2: f32 = 1.0;
 ///
 /// Strands at rest have up to N g h²/ℓ of it at the root: 11 for 130 points over 26 cm at 240 substeps a
 /// second. Higher values come from fast head motion or impacts.
-const SWINGS: f32 = 12.0;
+const MAX_SWINGING_STIFFNESS: f32 = 12.0;
 
-/// The same for strands in contact [1]. A contact force comes from the substep before, which amplifies
+/// Lateral stiffness T/ℓ, in units of m/h², above which the whole predicted displacement counts for strands in
+/// contact [1]. A contact force comes from the substep before, which amplifies
 /// vibrations on the contact, and strands in contact do not swing freely. The value is a quarter of the
 /// stiffness at which a chain without any damping is unstable, T/ℓ = m/h² (ω h = 2 of its highest mode).
-const TOUCHES: f32 = 0.25;
+const MAX_SWINGING_STIFFNESS_IN_CONTACT: f32 = 0.25;
 
 /// How much of a segment's tension is linearized at the predicted displacement: γ T/ℓ, or the excess over a
 /// bound.
@@ -118,7 +119,10 @@ impl<S: Simd> Sideways<S> {
     #[inline(always)]
     pub fn new(simd: S, share: f32, h: f32, touches: Mask<S>) -> Self {
         let bound = |units: f32| F::splat(simd, units / (h * h));
-        Self { share: F::splat(simd, share), bound: touches.select(bound(TOUCHES), bound(SWINGS)) }
+        Self {
+            share: F::splat(simd, share),
+            bound: touches.select(bound(MAX_SWINGING_STIFFNESS_IN_CONTACT), bound(MAX_SWINGING_STIFFNESS)),
+        }
     }
 
     /// For a segment with lateral stiffness T/ℓ `stiffness` [N/m], whose farther point has the mass `mass`
@@ -129,10 +133,10 @@ impl<S: Simd> Sideways<S> {
     }
 }
 
-/// The same for single numbers: stiffness [N/m], mass [kg] and length of the substep [s].
+/// Returns what `Sideways::of` returns, for single numbers: stiffness [N/m], mass [kg] and length of the substep [s].
 #[cfg(test)]
 pub fn sideways(share: f64, touches: bool, stiffness: f64, (mass, h): (f64, f64)) -> f64 {
-    let units = if touches { TOUCHES } else { SWINGS };
+    let units = if touches { MAX_SWINGING_STIFFNESS_IN_CONTACT } else { MAX_SWINGING_STIFFNESS };
     (stiffness * share).max(stiffness - mass * f64::from(units) / (h * h))
 }
 

@@ -244,9 +244,9 @@ fn a_tooltip_names_range_unit_and_default() {
         tip(parameter, reason.as_deref(), parameter.key(0, 0).look_up(head.defaults()))
     };
     for (name, line) in [
-        ("damping", "0 or more [s]; default 0.015\n"),
+        ("damping", "0 to 10000 [s]; default 0.015\n"),
         ("effects.clump", "0 to 1; default 0\n"),
-        ("wind.velocity", "three finite numbers [m/s]; default 0, 0, 0\n"),
+        ("wind.velocity", "three numbers from -1000 to 1000 [m/s]; default 0, 0, 0\n"),
         ("solver.segment_contacts", "on or off; default on\n"),
         ("style", "straight, wavy, curly, coily, short-fur; default wavy\n"),
         ("look.melanin", "0 to 1; default none\n"),

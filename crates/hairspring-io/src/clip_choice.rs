@@ -1,0 +1,54 @@
+//! The choice of one of the motions of a file.
+
+use crate::load::list;
+use hairspring::body::Clip;
+
+/// Names of motions that a note lists.
+const LISTED: usize = 12;
+
+/// Returns the index of the clip called `name`, ignoring case, or of the first if `name` is `None`. The error lists
+/// the available names.
+pub(crate) fn pick_clip(clips: &[Clip], name: Option<&str>) -> Result<usize, String> {
+    let found = match name {
+        Some(name) => clips.iter().position(|c| c.name.eq_ignore_ascii_case(name)),
+        None => (!clips.is_empty()).then_some(0),
+    };
+    found.ok_or_else(|| {
+        let known: Vec<&str> = clips.iter().map(|c| c.name.as_str()).collect();
+        match name {
+            Some(name) => format!("there is no motion called {name:?}; available: {}", list(&known)),
+            None => "the file holds no motion; export it with its animations, or name another file".into(),
+        }
+    })
+}
+
+/// A note if the first of several clips is used because no name was given.
+pub(crate) fn first_note(clips: &[Clip], name: Option<&str>) -> Option<String> {
+    let [first, others @ ..] = clips else { return None };
+    (name.is_none() && !others.is_empty()).then(|| {
+        format!(
+            "the file has {} motions, and the first, {:?}, is used; set `name` to use another: {}",
+            clips.len(),
+            first.name,
+            names(others)
+        )
+    })
+}
+
+/// A note if the clips of a body are not played.
+pub(crate) fn unplayed_note(clips: &[Clip]) -> Option<String> {
+    (!clips.is_empty()).then(|| {
+        let (motions, are) = if clips.len() == 1 { ("motion", "is") } else { ("motions", "are") };
+        let (count, names) = (clips.len(), names(clips));
+        format!("the file has {count} {motions} ({names}), which {are} not played; add [clip] to play one")
+    })
+}
+
+/// The names of clips, up to a number.
+fn names(clips: &[Clip]) -> String {
+    let listed: Vec<&str> = clips.iter().take(LISTED).map(|clip| clip.name.as_str()).collect();
+    match clips.len() - listed.len() {
+        0 => list(&listed),
+        more => format!("{} and {more} more", list(&listed)),
+    }
+}

@@ -1,0 +1,93 @@
+//! Stray points of a groom: points that lie far from all others and say nothing about its size.
+
+use crate::units::{bounds, extent};
+use glam::Vec3;
+use hairspring::groom::Groom;
+
+/// Distance from the middle of a groom above which a point is a stray, over the median distance [1]. Points of a head of
+/// hair with a long tail reach a quarter of it.
+const FAR: f32 = 12.0;
+/// A larger share of points than one in this number is a part of the groom.
+const FEWEST: usize = 5;
+/// Largest number of points that medians are taken over.
+const SAMPLES: usize = 20_000;
+
+/// Stray points of a groom, and its size without them.
+pub(crate) struct Strays {
+    /// Number of them that are exactly at the origin.
+    at_origin: usize,
+    /// Number of the others.
+    elsewhere: usize,
+    /// Longest side of the box around the groom [file units].
+    pub extent: f32,
+}
+
+impl Strays {
+    pub(crate) fn of(groom: &Groom) -> Self {
+        let at_origin = at_origin(groom);
+        let counts = |p: &Vec3| p.is_finite() && (at_origin == 0 || *p != Vec3::ZERO);
+        let is_near = nearness(groom.points.iter().copied().filter(counts));
+        let elsewhere = groom.points.iter().filter(|p| counts(p) && !is_near(**p)).count();
+        let all = elsewhere * FEWEST > groom.points.len();
+        let kept = || groom.points.iter().copied().filter(|p| counts(p) && (all || is_near(*p)));
+        Self {
+            at_origin,
+            elsewhere: if all { 0 } else { elsewhere },
+            extent: inner_extent(&kept, groom.points.len()),
+        }
+    }
+
+    /// The end of a note about a guess that these points had no part in.
+    pub(crate) fn note(&self) -> Option<String> {
+        match (self.at_origin, self.elsewhere) {
+            (0, 0) => None,
+            (n, 0) => Some(format!(" ({n} points at the origin, far from the others, do not count)")),
+            (at_origin, n) => Some(format!(" ({} points far from the others do not count)", at_origin + n)),
+        }
+    }
+}
+
+/// Returns whether a point is near enough to the middle of `points` to belong to them. Distances are those of the
+/// farthest coordinate, which do not overflow for any finite point.
+fn nearness(points: impl Iterator<Item = Vec3> + Clone) -> impl Fn(Vec3) -> bool {
+    let step = points.clone().count().div_ceil(SAMPLES).max(1);
+    let sample: Vec<Vec3> = points.step_by(step).collect();
+    let median = |mut values: Vec<f32>| {
+        let middle = values.len() / 2;
+        if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f32::total_cmp).1 }
+    };
+    let middle = Vec3::from([0, 1, 2].map(|axis| median(sample.iter().map(|p| p[axis]).collect())));
+    let distance = move |p: Vec3| (p - middle).abs().max_element();
+    let limit = FAR * median(sample.iter().map(|p| distance(*p)).collect());
+    move |p| limit == 0.0 || distance(p) <= limit
+}
+
+/// Number of points exactly at the origin that are no part of the hair: at most a tenth of all, and farther
+/// from the box of the others than its longest side.
+fn at_origin(groom: &Groom) -> usize {
+    let at_origin = groom.points.iter().filter(|p| **p == Vec3::ZERO).count();
+    if at_origin == 0 || at_origin * 10 > groom.points.len() {
+        return 0;
+    }
+    let others = groom.points.iter().copied().filter(|p| *p != Vec3::ZERO && p.is_finite());
+    let is_near = nearness(others.clone());
+    let (lo, hi) = bounds(others.filter(|p| is_near(*p)));
+    let outside = Vec3::ZERO.clamp(lo, hi).length();
+    if outside > 0.5 * (hi - lo).max_element() { at_origin } else { 0 }
+}
+
+/// The longest side of the box around `points`, of which there are at most `count`. The hundredth of them that is
+/// farthest out does not count if the box without it is less than half as long.
+fn inner_extent<P: Iterator<Item = Vec3>>(points: &dyn Fn() -> P, count: usize) -> f32 {
+    let whole = extent(points());
+    let step = count.div_ceil(SAMPLES).max(1);
+    let inner = |axis: usize| {
+        let mut along: Vec<f32> = points().step_by(step).map(|p| p[axis]).collect();
+        along.sort_by(f32::total_cmp);
+        let cut = along.len() / 100;
+        let at = |i: usize| along.get(i).copied().unwrap_or(0.0);
+        at(along.len().saturating_sub(1 + cut)) - at(cut)
+    };
+    let inner = inner(0).max(inner(1)).max(inner(2));
+    if inner > 0.0 && inner < 0.5 * whole { inner } else { whole }
+}
