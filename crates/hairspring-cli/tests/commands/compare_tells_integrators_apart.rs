@@ -97,7 +97,7 @@ fn invalid_arguments_are_refused() {
         (&["compare", "--methods", "--scale", "2"], 2, "--scale"),
         (&["compare", "nowhere.hair", "--methods"], 3, "nowhere.hair"),
         (&["compare", "--methods", "--report", "no/where.html"], 5, "no"),
-        (&["compare", "--methods", "--report", "shot.toml"], 2, "a report is a .html file"),
+        (&["compare", "--methods", "--report", "shot.toml"], 2, "a name that ends in .html"),
     ] {
         let stderr = fail(Path::new("."), arguments, code);
         assert!(stderr.lines().count() == 1 && stderr.contains(part), "{arguments:?}: {stderr}");

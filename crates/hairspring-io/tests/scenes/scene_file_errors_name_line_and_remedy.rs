@@ -16,7 +16,7 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         (format!("[solver]\nsubstep = 3\n{GROOM}"), &["line 2", "did you mean `substeps`?"]),
         (format!("[slover]\n{GROOM}"), &["line 1", "did you mean `solver`?"]),
         (format!("{GROOM}[volume]\nmethod = \"densty\"\n"), &["line 4", "did you mean `density`?"]),
-        (format!("{GROOM}[volume]\ncell = 0\n"), &["line 4", "`cell` must be above 0 [m]"]),
+        (format!("{GROOM}[volume]\ncell = 0\n"), &["line 4", "`cell` must be above 0, at most 1 [m]"]),
         (format!("{GROOM}[neighbours]\nradius = 0\n"), &["line 4", "`radius` must be above 0 [m]"]),
         (format!("{GROOM}[neighbours]\nstiction = -1\n"), &["line 4", "`stiction` must be 0 or more [N]"]),
         (format!("{GROOM}[volume]\nfriction = -1\n"), &["line 4", "`friction` must be 0 or more [1/s]"]),

@@ -58,11 +58,11 @@ define_settings! {
                 => "1 to 64 numbers, 0.0001 to 10000, the largest at most 100 times the smallest"
         };
         /// Young's modulus along the fiber. The default is that of human hair.
-        young: f32 = 3.9e9, ["Pa"], {1 to 1e15}, when HAS_BENDING;
+        young: f32 = 3.9e9, ["Pa"], {1 to 1e25}, when HAS_BENDING;
         /// Shear modulus of the fiber, which resists twisting. The default is that of human hair.
         ///
         /// It is independent of Young's modulus because hair is anisotropic; with the defaults, GJ/EI is 0.46.
-        shear: f32 = 0.89e9, ["Pa"], {1 to 1e15}, when When::All(&[
+        shear: f32 = 0.89e9, ["Pa"], {1 to 1e25}, when When::All(&[
             When::IsNot("solver.integrator", &["ftl", "dftl", "local-global"]),
             When::IsNot("material.model", &["curvature"]),
         ]);

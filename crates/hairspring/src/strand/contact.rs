@@ -29,19 +29,6 @@ use super::{
 use crate::collide::ColliderPose;
 use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, Work, load, store};
 
-/// Largest speed at which contact pushes out a point that was inside at the start of a substep [m/s]; the speed of the
-/// collider is added. A correction of all the depth in one substep would make hair as fast as the depth over the
-/// substep: 30 m/s and more in the short substeps that a thin rod requires. Box2D v3 has the
-/// same limit, `contactPushMaxVelocity`.
-pub const MAX_PUSH: f32 = 1.0;
-
-/// Returns the gap [m] that the solve closes in a substep of `h` [s]: `gap`, but no deeper than contact may push at
-/// [`MAX_PUSH`]. The surface moves by `approach` along its normal in the substep [m].
-#[inline(always)]
-pub fn pushed_gap<S: Simd>(gap: F<S>, approach: F<S>, h: f32) -> F<S> {
-    gap.max(-approach.max(0.0) - F::splat(gap.simd, MAX_PUSH * h))
-}
-
 /// Rows of scratch a point. They are written where at least one of the eight points is in contact.
 pub mod scratch {
     /// Outward normal, 3 rows.
@@ -85,7 +72,7 @@ pub fn assemble_contact<S: Simd, const B: usize>(
     let m_h2 = load(simd, &tile.rest[i][rest::MASS]) * (1.0 / (step.h * step.h));
     let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
     let force = shut.select(force, zero);
-    gap = shut.select(pushed_gap(gap, normal.dot(carried), step.h), zero);
+    gap = shut.select(gap, zero);
     normal = V3::select(shut, normal, V3::zero(simd));
     store(force, &mut tile.state[i][state::NORMAL_FORCE]);
     normal.store(&mut work[scratch::NORMAL..]);

@@ -34,9 +34,6 @@ pub struct PostSolveParams {
     /// Converts a correction into a contact force for the next solve: force over mass and depth [1/s²]; 0
     /// where contact is not part of the solve.
     pub press: f32,
-    /// Largest depth that contact turns into motion in a substep [m]: [`MAX_PUSH`](super::contact::MAX_PUSH) times
-    /// its length. Infinite: all of it.
-    pub push: f32,
     /// Whether points inside a collider are moved out.
     pub project: bool,
     /// Whether `scratch.kick` is added to the velocities.
@@ -45,8 +42,7 @@ pub struct PostSolveParams {
 
 impl PostSolveParams {
     /// For integrators that are shown without a strain limit, and without contact in the solve.
-    pub const WITHOUT_LIMIT: Self =
-        Self { limit: f32::INFINITY, press: 0.0, push: f32::INFINITY, project: true, kicks: true };
+    pub const WITHOUT_LIMIT: Self = Self { limit: f32::INFINITY, press: 0.0, project: true, kicks: true };
 
     /// Returns the initial contact force of the next solve for a point that is `depth` [m] inside, where the
     /// force was `force` [N].
@@ -56,7 +52,7 @@ impl PostSolveParams {
     #[inline(always)]
     pub fn pressed<S: Simd>(&self, force: F<S>, mass: F<S>, depth: F<S>, approach: F<S>) -> F<S> {
         if self.project {
-            force + mass * self.press * (depth - approach).max(0.0).min(self.push)
+            force + mass * self.press * (depth - approach).max(0.0)
         } else {
             force.max(mass * self.press * depth)
         }
@@ -119,25 +115,20 @@ pub fn post_solve<S: Simd>(
     let mut shift = V3::zero(simd);
     // Where the previous point may be inside a collider, because the root drives it or because it could not get out.
     let mut buried = Mask::splat(simd, true);
-    // Where contact moved the previous point by more than `push`.
-    let mut pushed = Mask::splat(simd, false);
     let mut i = 2 * stride;
     while i < tile.rest.len() {
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
         let link = SegmentLimit { length, limit: finish.limit };
         // From the corrected position of the previous point.
-        let shift_before = std::mem::replace(&mut shift, V3::zero(simd));
-        let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift_before;
+        let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
         let solved = if stride == 2 { extra + V3::load(simd, &scratch.edges[i]) } else { extra };
         let mut e = solved;
+        shift = V3::zero(simd);
         // A branch: a segment depends on the previous one only where a correction is needed.
         let world = step.root.position + (at.x + e);
         let wrong = link.wrong(e) | exceeds_lra(simd, tile, i, at.x + e);
         let before = std::mem::replace(&mut buried, Mask::splat(simd, false));
-        let follows = std::mem::replace(&mut pushed, Mask::splat(simd, false));
-        let mut slowed = None;
-        let corrected = wrong.any_true() || follows.any_true();
-        if needs_contact_test(simd, step, tile, (i, world, e)) || corrected {
+        if needs_contact_test(simd, step, tile, (i, world, e)) || wrong.any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             // Copies are passed, as for the tile. Passing the originals by reference would force the compiler
             // to keep them in memory at every point.
@@ -152,16 +143,6 @@ pub fn post_solve<S: Simd>(
             );
             e = V3::select(free, out, e);
             buried = inside | !free;
-            let far = |shift: V3<S>| shift.dot(shift).simd_gt(finish.push * finish.push) & free;
-            if (far(e - solved) | follows).any_true() {
-                let edges = (solved + shift_before, solved, e);
-                let within = (step, finish.push);
-                let push =
-                    limit_push(simd, within, &tile.reborrow(), (i, stride), edges, (&at, &link, follows));
-                e = V3::select(free, push.edge, e);
-                pushed = push.pushed & far(e - solved);
-                slowed = Some(pushed.select(push.speed, F::splat(simd, 1.0)));
-            }
             shift = e - solved;
             // A held point has no contact.
             let keep = |rows: &mut [Row]| {
@@ -189,69 +170,8 @@ pub fn post_solve<S: Simd>(
             last = e - extra;
         }
         at = write(simd, finish, step, (i, &at, last), tile, scratch);
-        if let Some(factor) = slowed {
-            let slow = |rows: &mut [Row]| (V3::load(simd, rows) * factor).store(rows);
-            slow(&mut tile.state[i][state::V..state::V + 3]);
-            if let Some(rows) = tile.history.get_mut(i) {
-                slow(&mut rows[history::DISPLACEMENT..history::DISPLACEMENT + 3]);
-            }
-        }
         i += stride;
     }
-}
-
-/// The remainder of a correction by contact that moves a point too far in a substep.
-struct Push<S: Simd> {
-    /// Where contact moved the point or the one before.
-    pushed: Mask<S>,
-    /// The segment's edge vector [m].
-    edge: V3<S>,
-    /// Factor for the point's velocity [1].
-    speed: F<S>,
-}
-
-/// Limits the motion that a correction by contact gives to point `i`. Otherwise it would be a source of energy in the
-/// short substeps that thin colliders require: the velocity is the correction over the substep. The point gets faster
-/// than it was, or than the collider is there, by at most [`MAX_PUSH`](super::contact::MAX_PUSH). Its segment keeps the
-/// length of the solve, because the next solve would correct a change of 1 % within one substep.
-///
-/// `raw` is the edge vector of the solve, `solved` leads from the corrected previous point to the point of the solve,
-/// and `e` to the corrected point. Points that `follow` a pushed one are limited too.
-#[inline(never)]
-fn limit_push<S: Simd>(
-    simd: S,
-    (step, push): (&SubstepContext<S>, f32),
-    tile: &Tile,
-    (i, stride): (usize, usize),
-    (raw, solved, e): (V3<S>, V3<S>, V3<S>),
-    (at, link, follows): (&Particle<S>, &SegmentLimit<S>, Mask<S>),
-) -> Push<S> {
-    simd.vectorize(
-        #[inline(always)]
-        || {
-            let size = |v: V3<S>| v.dot(v).sqrt();
-            let mut old = V3::load(simd, &tile.state[i][state::EDGE..]);
-            if stride == 2 {
-                old += V3::load(simd, &tile.state[i - 1][state::EDGE..]);
-            }
-            let moved = e - link.clamp(apply_lra(simd, tile, i, (at, link), solved));
-            let pushed = follows | moved.dot(moved).simd_gt(0.0);
-            let (length, along) = e.length_and_unit();
-            let of_solve = link.within(size(raw));
-            let length = length.max(of_solve.min(link.length)).min(of_solve.max(link.length));
-            let edge = V3::select(pushed, along * length, e);
-            let world = step.root.position + (at.x + edge);
-            let mut most = size(at.displacement + (solved - old));
-            for pose in step.colliders {
-                let near = contact(simd, pose, world).0.simd_lt(link.length);
-                let carried = size(surface_displacement(simd, pose, world));
-                most = near.select(most.max(carried), most);
-            }
-            let now = size(at.displacement + (edge - old)).max(f32::MIN_POSITIVE);
-            let speed = ((most + F::splat(simd, push)) / now).min(1.0);
-            Push { pushed, edge, speed }
-        },
-    )
 }
 
 /// Returns whether point `i` at world position `world`, or the segment `e` that ends there, may be inside a

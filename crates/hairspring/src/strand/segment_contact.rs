@@ -8,7 +8,7 @@ use super::{
     assemble::{Linearization, SubstepContext},
     colliders::{contact, find_deepest_point, surface_displacement},
     contact::{
-        Surface, nearest, passes, pushed_gap,
+        Surface, nearest, passes,
         scratch::{self, SEGMENT},
     },
     friction::{Friction, FrictionSpring},
@@ -77,7 +77,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     let m_h2 = load(simd, &tile.rest[outer][rest::MASS]) * (1.0 / (step.h * step.h));
     let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
     let force = shut.select(force, zero);
-    let gap = shut.select(pushed_gap(gap, normal.dot(carried), step.h), zero);
+    let gap = shut.select(gap, zero);
     store(force, &mut tile.segment_contacts[outer][segment_contact::FORCE]);
     let rows = &mut tile.segment_contacts[outer][segment_contact::FRICTION_STRETCH..];
     let stretch = [0, 1].map(|k| shut.select(load(simd, &rows[k]), zero));

@@ -72,7 +72,7 @@ fn invalid_settings_are_refused() {
     assert_eq!(error.to_string(), "solver: `substeps` must be 1 to 1024");
     let materials = [Material::default(), Material { young: f32::NAN, ..Material::default() }];
     let error = Simulation::builder(groom(3)).materials(&materials).build().err().unwrap();
-    assert_eq!(error.to_string(), "material 1: `young` must be 1 to 1e15 [Pa]");
+    assert_eq!(error.to_string(), "material 1: `young` must be 1 to 1e25 [Pa]");
     let error = Simulation::builder(groom(3)).gravity(Vec3::NAN).build().err().unwrap();
     assert_eq!(error.to_string(), "`gravity` must be three numbers from -10000 to 10000 [m/s²]");
     let anchor = RigidTransform { translation: Vec3::NAN, ..RigidTransform::default() };

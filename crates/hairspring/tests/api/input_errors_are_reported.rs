@@ -274,11 +274,12 @@ fn extreme_settings_do_not_panic() {
                 ..Volume::default()
             };
             hair.set_volume(&volume).unwrap();
-            let cell = Some(value).filter(|cell| *cell > 0.0);
+            let radius = Some(value).filter(|radius| *radius > 0.0);
+            let cell = radius.filter(|cell| *cell <= 1.0);
             hair.set_volume(&Volume { cell, ..volume }).unwrap();
             let neighbours =
                 Neighbours { on: true, friction: value, stiction: value, ..Neighbours::default() };
-            hair.set_neighbours(&Neighbours { radius: cell, ..neighbours }).unwrap();
+            hair.set_neighbours(&Neighbours { radius, ..neighbours }).unwrap();
             let reach = value.max(1e-30);
             hair.set_wind_occlusion(&WindOcclusion { body: value, hair: value, reach }).unwrap();
             let wind = Wind { velocity: Vec3::X, ..Wind::default() };
