@@ -42,7 +42,7 @@ fn keys_at_the_frame_rates_of_programs_are_exact() {
         for interpolation in ["STEP", "LINEAR"] {
             // Programs begin at frame 1, and round the times.
             let times: Vec<f32> = (1..=9).map(|k| (f64::from(k) / fps) as f32 + 3e-6).collect();
-            let x = |k: usize| if k % 2 == 0 { 0.1 * k as f32 } else { -0.1 };
+            let x = |k: usize| if k.is_multiple_of(2) { 0.1 * k as f32 } else { -0.1 };
             let values: Vec<f32> = (1..=9).flat_map(|k| [x(k), 0.0, 0.0]).collect();
             let mut file = GltfFile::tetrahedron();
             let (input, output) = (file.floats("SCALAR", &times), file.floats("VEC3", &values));
