@@ -124,8 +124,12 @@ impl Reader<'_> {
         near: usize,
     ) -> Result<(Option<Body>, Option<Clip>, Option<VertexCache>)> {
         if character.clips.is_empty() {
-            let text = "[clip] names no `file`, and the body's own file holds no motion; name the file of a motion, or remove [clip]";
-            return Err(self.wrong(near, "name", text.into()));
+            let motion = named.name.as_ref().map_or(String::new(), |name| format!("the motion {name:?} but "));
+            let text = format!(
+                "[clip] names {motion}no `file`, and the body's own file holds no motion; name the file of a motion, or \
+                 remove [clip]"
+            );
+            return Err(self.wrong(near, "name", text));
         }
         let wrong = |text: String| self.wrong(near, "name", format!("in the body's file {text}"));
         let clip = pick_clip(&character.clips, named.name.as_deref()).map_err(wrong)?;
