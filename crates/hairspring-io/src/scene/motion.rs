@@ -124,7 +124,8 @@ impl Reader<'_> {
         near: usize,
     ) -> Result<(Option<Body>, Option<Clip>, Option<VertexCache>)> {
         if character.clips.is_empty() {
-            let motion = named.name.as_ref().map_or(String::new(), |name| format!("the motion {name:?} but "));
+            let motion =
+                named.name.as_ref().map_or(String::new(), |name| format!("the motion {name:?} but "));
             let text = format!(
                 "[clip] names {motion}no `file`, and the body's own file holds no motion; name the file of a motion, or \
                  remove [clip]"
