@@ -398,6 +398,11 @@ impl<S: Simd> V3<S> {
     }
 
     #[inline(always)]
+    pub fn is_not_zero(self) -> Mask<S> {
+        self.dot(self).simd_gt(0.0)
+    }
+
+    #[inline(always)]
     pub fn select(mask: Mask<S>, a: Self, b: Self) -> Self {
         Self { x: mask.select(a.x, b.x), y: mask.select(a.y, b.y), z: mask.select(a.z, b.z) }
     }

@@ -136,13 +136,16 @@ impl Simulation {
         let carried = self.carry_along(input);
         // For bodies with several time slices, each slice has the same number of substeps.
         let parts = input.colliders.iter().map(|o| o.shape.time_slices() as u32).max().unwrap_or(1);
-        let substeps = ((f64::from(input.dt) / (substep_length(&solver) * SUBSTEP_TOLERANCE)).ceil() as u32)
+        let unrefined =
+            ((f64::from(input.dt) / (substep_length(&solver) * SUBSTEP_TOLERANCE)).ceil() as u32).max(1);
+        let substeps = unrefined
             .max(self.substeps_past(input, carried.as_ref()))
-            .clamp(1, MAX_SUBSTEPS_PER_STEP)
+            .min(MAX_SUBSTEPS_PER_STEP)
             .next_multiple_of(parts);
         let mut frame = std::mem::take(&mut self.frame);
         let looked_at = frame.segments;
         self.fill_frame(input, carried.as_ref(), substeps, &mut frame);
+        frame.relaxation = (unrefined as f32 / substeps as f32).min(1.0);
         if looked_at && !frame.segments {
             // Discard the segment contacts: nothing would update them until segments are tested again.
             self.state.segment_contacts.fill([Row::default(); segment_contact::ROWS]);

@@ -48,6 +48,8 @@ pub struct SubstepContext<'a, S: Simd> {
     pub left: f32,
     /// Length [s].
     pub h: f32,
+    /// The share of a correction by contact that becomes velocity [1]; see [`relax`](super::relax).
+    pub relaxation: f32,
     /// Gravity [m/s²].
     pub gravity: Vec3,
     /// Velocity of the air [m/s].

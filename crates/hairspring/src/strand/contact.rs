@@ -29,6 +29,15 @@ use super::{
 use crate::collide::ColliderPose;
 use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, Work, load, store};
 
+/// Returns the gap [m] that the solve closes in a substep: `gap` outside of the collider, and inside the share
+/// `relaxation` of it (see `relax`). The surface moves by `approach` along its normal in the substep [m], and the point
+/// follows that wholly.
+#[inline(always)]
+pub fn relaxed_gap<S: Simd>(gap: F<S>, approach: F<S>, relaxation: f32) -> F<S> {
+    let before = (-gap - approach.max(0.0)).max(0.0);
+    before.mul_add(1.0 - relaxation, gap)
+}
+
 /// Rows of scratch a point. They are written where at least one of the eight points is in contact.
 pub mod scratch {
     /// Outward normal, 3 rows.
@@ -72,7 +81,7 @@ pub fn assemble_contact<S: Simd, const B: usize>(
     let m_h2 = load(simd, &tile.rest[i][rest::MASS]) * (1.0 / (step.h * step.h));
     let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
     let force = shut.select(force, zero);
-    gap = shut.select(gap, zero);
+    gap = shut.select(relaxed_gap(gap, normal.dot(carried), step.relaxation), zero);
     normal = V3::select(shut, normal, V3::zero(simd));
     store(force, &mut tile.state[i][state::NORMAL_FORCE]);
     normal.store(&mut work[scratch::NORMAL..]);

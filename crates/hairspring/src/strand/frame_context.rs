@@ -13,6 +13,9 @@ use std::ops::Range;
 pub struct FrameContext {
     /// Length of a substep [s].
     pub h: f32,
+    /// Length of a substep over its length without refinement [1]: the share of a correction by contact that becomes
+    /// velocity; see [`relax`](super::relax).
+    pub relaxation: f32,
     /// How a substep is integrated.
     pub integrator: Integrator,
     /// Newton iterations in a substep, 1 or more.

@@ -21,6 +21,7 @@ pub(crate) mod precomputed;
 pub(crate) mod prefetch;
 pub(crate) mod profile;
 pub(crate) mod project;
+pub(crate) mod relax;
 pub(crate) mod rest_shape;
 pub(crate) mod root;
 pub(crate) mod scratch;

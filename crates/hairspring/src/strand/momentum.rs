@@ -106,6 +106,7 @@ where
         number: 0,
         left: 0.0,
         h: s.h as f32,
+        relaxation: 1.0,
         gravity: Vec3::ZERO,
         wind: Vec3::ZERO,
         moved: root.position,

@@ -17,6 +17,7 @@ use super::{
     colliders::{self, contact, segment_may_intersect, surface_displacement},
     contact::{is_passed, passes},
     friction::Friction,
+    relax::{Correction, relax},
     scratch::Scratch,
     segment::{resolve_segment_contact, segment_tolerance},
     tether::{apply_lra, exceeds_lra},
@@ -34,6 +35,8 @@ pub struct PostSolveParams {
     /// Converts a correction into a contact force for the next solve: force over mass and depth [1/s²]; 0
     /// where contact is not part of the solve.
     pub press: f32,
+    /// The share of a correction by contact that becomes velocity [1]; see [`relax`](super::relax).
+    pub relaxation: f32,
     /// Whether points inside a collider are moved out.
     pub project: bool,
     /// Whether `scratch.kick` is added to the velocities.
@@ -42,7 +45,8 @@ pub struct PostSolveParams {
 
 impl PostSolveParams {
     /// For integrators that are shown without a strain limit, and without contact in the solve.
-    pub const WITHOUT_LIMIT: Self = Self { limit: f32::INFINITY, press: 0.0, project: true, kicks: true };
+    pub const WITHOUT_LIMIT: Self =
+        Self { limit: f32::INFINITY, press: 0.0, relaxation: 1.0, project: true, kicks: true };
 
     /// Returns the initial contact force of the next solve for a point that is `depth` [m] inside, where the
     /// force was `force` [N].
@@ -52,7 +56,7 @@ impl PostSolveParams {
     #[inline(always)]
     pub fn pressed<S: Simd>(&self, force: F<S>, mass: F<S>, depth: F<S>, approach: F<S>) -> F<S> {
         if self.project {
-            force + mass * self.press * (depth - approach).max(0.0)
+            force + mass * self.press * (depth - approach).max(0.0) * self.relaxation
         } else {
             force.max(mass * self.press * depth)
         }
@@ -115,20 +119,24 @@ pub fn post_solve<S: Simd>(
     let mut shift = V3::zero(simd);
     // Where the previous point may be inside a collider, because the root drives it or because it could not get out.
     let mut buried = Mask::splat(simd, true);
+    // Where the correction of the previous point was relaxed.
+    let mut relaxed = Mask::splat(simd, false);
     let mut i = 2 * stride;
     while i < tile.rest.len() {
         let length = load(simd, &tile.rest[i - stride][rest::LENGTH]);
         let link = SegmentLimit { length, limit: finish.limit };
         // From the corrected position of the previous point.
-        let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift;
+        let shift_before = std::mem::replace(&mut shift, V3::zero(simd));
+        let mut extra = V3::load(simd, &scratch.edges[i + 1 - stride]) - shift_before;
         let solved = if stride == 2 { extra + V3::load(simd, &scratch.edges[i]) } else { extra };
         let mut e = solved;
-        shift = V3::zero(simd);
         // A branch: a segment depends on the previous one only where a correction is needed.
         let world = step.root.position + (at.x + e);
         let wrong = link.wrong(e) | exceeds_lra(simd, tile, i, at.x + e);
         let before = std::mem::replace(&mut buried, Mask::splat(simd, false));
-        if needs_contact_test(simd, step, tile, (i, world, e)) || wrong.any_true() {
+        let follows = std::mem::replace(&mut relaxed, Mask::splat(simd, false));
+        let mut slower = None;
+        if needs_contact_test(simd, step, tile, (i, world, e)) || wrong.any_true() || follows.any_true() {
             let free = load(simd, &scratch.fixed[i].inverse_mass).simd_gt(0.0);
             // Copies are passed, as for the tile. Passing the originals by reference would force the compiler
             // to keep them in memory at every point.
@@ -143,6 +151,21 @@ pub fn post_solve<S: Simd>(
             );
             e = V3::select(free, out, e);
             buried = inside | !free;
+            let corrected = (e - solved).is_not_zero() & free;
+            if finish.relaxation < 1.0 && (corrected | follows).any_true() {
+                let correction = Correction { raw: solved + shift_before, solved, corrected: e, follows };
+                let result = relax(
+                    simd,
+                    (step, finish.relaxation),
+                    &tile.reborrow(),
+                    (i, stride),
+                    &correction,
+                    (&at, &link),
+                );
+                e = V3::select(free, result.edge, e);
+                relaxed = result.relaxed & (e - solved).is_not_zero() & free;
+                slower = Some(relaxed.select(result.speed, F::splat(simd, 1.0)));
+            }
             shift = e - solved;
             // A held point has no contact.
             let keep = |rows: &mut [Row]| {
@@ -170,6 +193,13 @@ pub fn post_solve<S: Simd>(
             last = e - extra;
         }
         at = write(simd, finish, step, (i, &at, last), tile, scratch);
+        if let Some(factor) = slower {
+            let slow = |rows: &mut [Row]| (V3::load(simd, rows) * factor).store(rows);
+            slow(&mut tile.state[i][state::V..state::V + 3]);
+            if let Some(rows) = tile.history.get_mut(i) {
+                slow(&mut rows[history::DISPLACEMENT..history::DISPLACEMENT + 3]);
+            }
+        }
         i += stride;
     }
 }

@@ -439,6 +439,7 @@ fn solve_substep<S: Simd>(
         number: 0,
         left: 0.0,
         h: s.h as f32,
+        relaxation: 1.0,
         gravity: s.gravity.as_vec3(),
         wind: s.wind.as_vec3(),
         moved: root.position,

@@ -13,4 +13,5 @@ mod hair_with_a_covered_root_comes_to_rest;
 mod segment_penetration_is_measured;
 mod segments_stay_out_of_colliders;
 mod thin_colliders_keep_their_hair;
+mod thin_colliders_throw_no_hair;
 mod tresses_stop_each_other;

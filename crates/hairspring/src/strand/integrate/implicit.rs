@@ -49,6 +49,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B,
         PostSolveParams {
             limit: LIMIT,
             press: if frame.response == Response::Projection { 0.0 } else { per_mass },
+            relaxation: step.relaxation,
             project: frame.response != Response::Penalty,
             kicks: false,
         }
@@ -69,7 +70,7 @@ fn iteration_limit<S: Simd>(simd: S, setting: u32, tile: &Tile) -> F<S> {
 
 /// Newton convergence tolerance: largest correction over the longest segment [1], about the resolution of
 /// f32.
-const CONVERGED: f32 = 1e-5;
+const NEWTON_TOLERANCE: f32 = 1e-5;
 
 #[inline(always)]
 fn solve<S, M, const B: usize, const N: usize>(
@@ -152,7 +153,7 @@ where
         share = grew.select(share * 0.5, (share + share).min(1.0));
         // Converged strands are not changed, so that their result does not depend on their neighbors in the
         // tile.
-        let enough = length * CONVERGED;
+        let enough = length * NEWTON_TOLERANCE;
         let going = size.simd_gt(enough * enough);
         let share_now = going.select(share, F::splat(simd, 0.0));
         for i in M::DRIVEN..points {

@@ -112,6 +112,7 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
             number,
             left: 1.0 - substep.fraction,
             h: frame.h,
+            relaxation: frame.relaxation,
             gravity: frame.gravity,
             wind: substep.wind,
             root,
