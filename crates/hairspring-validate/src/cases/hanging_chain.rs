@@ -24,7 +24,7 @@ pub const CASE: Case = Case {
     ],
     method: USUAL,
     points_fixed: false,
-    min_points: 3,
+    min_points: 6,
     enough_points: 64,
     fails_with: &[Model::Springs],
     reason: |_, method| match method {

@@ -118,6 +118,7 @@ fn a_failing_run_states_its_cause() {
         ("michell", &[0.458][..], 3, "needs 6 points or more"),
         ("catenary", &[1.25], 3, "needs 4 points or more"),
         ("capstan", &[0.1], 3, "needs 8 points or more"),
+        ("hanging-chain", &[], 3, "needs 6 points or more"),
         ("heavy-cantilever", &[1.0], 3, "bends within 1.00 of its length, in only 2.0 segments"),
         ("heavy-cantilever", &[1000.0], 64, "at Γ = 1000 and 64 points, the strand bends within 0.10"),
         ("beam-modes", &[], 3, "3 points are 2 segments, too few"),

@@ -26,6 +26,10 @@ pub struct Crossing {
 /// before its plane it may end, as a fraction of the line. It closes the gaps that rounding leaves between triangles.
 const RIM: f32 = 1e-5;
 
+/// Maximum number of cells along the longest side of an enlarged shell. It exists for a moment, and most of the hair is
+/// far from it. With 128, a hat that closed in on three hairs took 19 s and half a gigabyte.
+const CELLS_OF_ENLARGED: f32 = 32.0;
+
 impl ThinShell {
     /// Returns the first crossing of the line from `from` to `to` [m] with one of its triangles; `None` if the
     /// line crosses none.
@@ -64,7 +68,8 @@ impl ThinShell {
         };
         let triangles: Vec<[u32; 3]> =
             (0..shell.triangles().len() as u32).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
-        self.update(&scaled(factor), Some(&scaled(before)), &triangles, None, shell.thickness());
+        let positions = (&scaled(factor)[..], Some(&scaled(before)[..]));
+        self.rebuild(positions, &triangles, None, shell.thickness(), CELLS_OF_ENLARGED);
     }
 }
 

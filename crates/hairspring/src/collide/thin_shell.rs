@@ -111,6 +111,19 @@ impl ThinShell {
         within: Option<(Vec3, Vec3)>,
         thickness: f32,
     ) {
+        self.rebuild((positions, before), triangles, within, thickness, MAX_CELLS_PER_SIDE);
+    }
+
+    /// [`ThinShell::update`] with at most so many `cells` along the longest side. Fewer cells are faster to build, and
+    /// queries are slower.
+    pub(super) fn rebuild(
+        &mut self,
+        (positions, before): (&[Vec3], Option<&[Vec3]>),
+        triangles: &[[u32; 3]],
+        within: Option<(Vec3, Vec3)>,
+        thickness: f32,
+        cells: f32,
+    ) {
         self.thickness = thickness;
         self.previous_slices.clear();
         self.corners.clear();
@@ -131,7 +144,7 @@ impl ThinShell {
         let (lo, hi) = within.map_or((lo, hi), |(a, b)| (lo.max(a), hi.min(b)));
         let nowhere = within.map_or(Vec3::ZERO, |(a, _)| a);
         let (lo, hi) = if lo.cmple(hi).all() { (lo, hi) } else { (nowhere, nowhere) };
-        let cell = reach.max((hi - lo).max_element() / MAX_CELLS_PER_SIDE);
+        let cell = reach.max((hi - lo).max_element() / cells);
         // A cell is at least as long as the reach, so a margin of one cell covers it.
         self.lattice = Lattice::covering(lo, hi, 1.0, cell, MAX_NODES);
 

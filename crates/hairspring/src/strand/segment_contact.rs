@@ -182,8 +182,9 @@ fn has_straight_edges(pose: &ColliderPose) -> bool {
     matches!(pose.shape, ColliderShape::Cuboid { .. } | ColliderShape::Hull(_))
 }
 
-/// Returns the place `at` after one substep in which it follows `to`, both as fractions of the segment. Only on a hull
-/// does it follow slowly: a thin box may cross a whole segment in a substep.
+/// Returns the place `at` after one substep in which it follows `to`, both as fractions of the segment. It follows slowly
+/// on hulls and on fields, whose deepest place jumps between the cells along a ridge. A thin box may cross a whole
+/// segment in a substep.
 ///
 /// ```text
 ///       ┏━━━━━●━━━━━━━●━━━━     a segment that lies on two edges: the deepest place jumps from one to the other, and
@@ -191,7 +192,7 @@ fn has_straight_edges(pose: &ColliderPose) -> bool {
 /// ```
 #[inline(always)]
 pub fn moved_place<S: Simd>(pose: &ColliderPose, at: F<S>, to: F<S>) -> F<S> {
-    if !matches!(pose.shape, ColliderShape::Hull(_)) {
+    if !matches!(pose.shape, ColliderShape::Hull(_) | ColliderShape::Field(_)) {
         return to;
     }
     let slowly = to.min(at + JUMP).max(at - JUMP);
