@@ -17,7 +17,8 @@ pub(super) fn simulation(
     anchor: RigidTransform,
     colliders: &[ColliderPose],
 ) -> Simulation {
-    let (groom, materials) = (join(hair), materials(hair));
+    let (groom, materials) =
+        (join(hair, |hair| hair.simulated_strands().to_vec(), usize::MAX), materials(hair));
     let strands: Vec<u32> = (0..groom.strand_count() as u32).collect();
     let mut simulation = Simulation::builder(Arc::new(groom))
         .strands(&strands)
@@ -46,16 +47,23 @@ fn own_materials<'a>(hair: &'a StagedHair, default: &'a [Material]) -> &'a [Mate
     if hair.materials().is_empty() { default } else { hair.materials() }
 }
 
-/// Joins the simulated strands into one groom with the data that a simulation needs.
-fn join(hair: &[StagedHair]) -> Groom {
+/// Joins strands `of` each hair into one groom with the data that a simulation needs. Of a strand with more than
+/// `most` points (2 or more), so many are kept.
+pub(super) fn join(hair: &[StagedHair], of: impl Fn(&StagedHair) -> Vec<u32>, most: usize) -> Groom {
     let mut all = Groom { offsets: vec![0], ..Groom::default() };
     let mut first = 0;
     for hair in hair {
         let groom = hair.groom();
         let last = first + hair.materials().len().max(1) - 1;
-        for s in hair.simulated_strands().iter().map(|s| *s as usize) {
-            all.points.extend_from_slice(groom.strand(s));
-            all.radii.extend_from_slice(&groom.radii[groom.range(s)]);
+        for s in of(hair).into_iter().map(|s| s as usize) {
+            let range = groom.range(s);
+            let kept = range.len().min(most);
+            for k in 0..kept {
+                let at =
+                    range.start + if kept < range.len() { k * (range.len() - 1) / (kept - 1) } else { k };
+                all.points.push(groom.points[at]);
+                all.radii.push(groom.radii[at]);
+            }
             all.offsets.push(all.points.len() as u32);
             // A group beyond the end uses the last material of its groom.
             all.groups.push((first + groom.group(s) as usize).min(last) as u16);

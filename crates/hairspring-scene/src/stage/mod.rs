@@ -17,6 +17,7 @@ mod manipulators;
 mod notes;
 mod preroll;
 mod reach;
+mod rehearsal;
 mod rigid_parts;
 mod starts_inside;
 mod state;

@@ -1,9 +1,13 @@
 //! The box that hair and head stay in over the whole motion, for a camera that is set automatically.
 
-use super::{Stage, body_pose::Pose, hair::StagedHair};
+use super::{
+    Stage,
+    body_pose::Pose,
+    rehearsal::{self, Rehearsal},
+};
 use crate::Scene;
 use glam::{Affine3A, Quat, Vec3};
-use hairspring::{body::Body, groom::Groom};
+use hairspring::{body::Body, groom::Groom, math::RigidTransform};
 use rayon::prelude::*;
 
 /// Maximum number of poses of the clip that are measured.
@@ -15,39 +19,33 @@ const SAMPLES: usize = 2_000;
 /// The part of the body that belongs to the subject: distance from the hair's box, relative to its diagonal.
 const NEARBY: f32 = 0.15;
 
-/// Margin around the subject for hair that swings, relative to the diagonal of the hair at rest. Where the
-/// body moves, hair swings farther.
-const MARGIN: [f32; 2] = [0.06, 0.12];
-
-/// Wind speed at which long hair is nearly horizontal [m/s].
-const STRONG_WIND: f32 = 2.0;
-
-/// Time over which the acceleration of a root is measured [s].
-const INTERVAL: f64 = 1.0 / 15.0;
-
-/// Acceleration that throws hair to its length [m/s²].
-const STANDARD_GRAVITY: f32 = 9.81;
+/// Margin around the subject, relative to the diagonal of the hair at rest.
+const MARGIN: f32 = 0.06;
 
 /// A box (min, max) [m].
 type Bounds = (Vec3, Vec3);
 
 impl Stage {
-    /// Returns the box (min, max) [m] of the subject over the whole motion, with a margin for hair that
-    /// swings: the hair, and the part of the body near it. It depends on the scene only, not on the current
-    /// time. `None` if no point is finite.
+    /// Returns the box (min, max) [m] of the subject over the whole motion: the hair, and the part of the body near it, with
+    /// a margin. It depends on the scene only, not on the current time. `None` if no point is finite.
     ///
-    /// Nothing is simulated: hair moves rigidly with its root, is blown in the direction of the wind at the height of
-    /// a gust, is thrown against the acceleration of its root, and falls if it starts out of balance.
+    /// A few strands are simulated once through the first 20 s, without colliders. Where they swing out of the box of the
+    /// rigidly moving hair, the box gets larger, at all times.
     pub fn subject_bounds(&self) -> Option<Bounds> {
         let points = self.hair.iter().flat_map(|hair| &hair.groom().points).copied();
         let rest = points.fold(None, around)?;
         let size = rest.0.distance(rest.1);
-        let times = times(&self.scene);
         let subject = Subject::new(self, rest, size * NEARBY);
-        let moving = times.len() > 1;
-        let moved = times.into_par_iter().filter_map(|time| subject.bounds(time)).reduce_with(join);
-        let (low, high) = moved.map_or(rest, |moved| join(rest, moved));
-        let room = Vec3::splat(size * MARGIN[usize::from(moving)]);
+        let (beyond, swung) = subject.rehearse();
+        let moved =
+            times(&self.scene).into_par_iter().filter_map(|time| subject.bounds(time)).reduce_with(join);
+        let rigid = moved.map_or(rest, |moved| join(rest, moved));
+        let (low, high) = swung.map_or(rigid, |swung| join(rigid, swung));
+        // The part of the motion that is not rehearsed.
+        let long = self.scene.clip.as_ref().is_some_and(|clip| clip.duration() > rehearsal::LONGEST);
+        let (low, high) =
+            if long { join((low, high), (rigid.0 - beyond.0, rigid.1 + beyond.1)) } else { (low, high) };
+        let room = Vec3::splat(size * MARGIN);
         Some((low - room, high + room))
     }
 }
@@ -96,17 +94,12 @@ struct Subject<'a> {
     first: Option<Posed<'a>>,
     /// Vertices of the body near the hair.
     vertices: Vec<u32>,
-    /// Displacement of a tip from its root due to wind, relative to the length of the hair.
-    blown: Vec3,
-    /// The same due to gravity, if hair starts out of balance.
-    fallen: Vec3,
 }
 
 impl<'a> Subject<'a> {
     /// `hair`: the box of the hair at rest. Vertices belong to the subject within `reach` [m] of it.
     fn new(stage: &'a Stage, hair: Bounds, reach: f32) -> Self {
-        let Scene { body, wind, gravity, solver, .. } = &stage.scene;
-        let first = body.as_ref().map(|body| {
+        let first = stage.scene.body.as_ref().map(|body| {
             let world = stage.body.pose().first_world(&stage.scene);
             Posed::new(body, Pose { world, ..Pose::default() })
         });
@@ -118,21 +111,59 @@ impl<'a> Subject<'a> {
             let every = vertices.len().div_ceil(SAMPLES).max(1);
             vertices = vertices.into_iter().step_by(every).collect();
         }
-        let gust = wind.velocity.length() * (1.0 + wind.gust);
-        let blown = wind.velocity.normalize_or_zero() * (gust / STRONG_WIND).min(1.0);
-        let falls = !solver.sag_free && solver.preroll == 0.0;
-        let fallen = if falls { gravity.normalize_or_zero() } else { Vec3::ZERO };
-        Self { stage, first, vertices, blown, fallen }
+        Self { stage, first, vertices }
     }
 
-    /// The box in the pose at `time` [s].
+    /// The box at `time` [s], if hair moves rigidly with its roots.
     fn bounds(&self, time: f64) -> Option<Bounds> {
-        let end = self.stage.scene.clip.as_ref().map_or(0.0, |clip| clip.duration());
-        let poses = [-INTERVAL, 0.0, INTERVAL].map(|later| self.posed((time + later).clamp(0.0, end)));
-        let poses = poses.each_ref().map(|pose| pose.as_ref().or(self.first.as_ref()));
-        let skin = poses[1].into_iter().flat_map(|now| self.vertices.iter().map(|v| now.vertex(*v)));
+        let posed = self.posed(time);
+        let now = posed.as_ref().or(self.first.as_ref());
+        let skin = now.into_iter().flat_map(|now| self.vertices.iter().map(|v| now.vertex(*v)));
         let skin = skin.fold(None, around);
-        self.stage.hair.iter().fold(skin, |bounds, hair| self.hair_bounds(hair, poses, bounds))
+        self.stage.hair.iter().fold(skin, |bounds, hair| self.hair_bounds(hair.groom(), now, bounds))
+    }
+
+    /// Returns how far strands swing out of the box of the same strands that move rigidly, on its lower and upper sides [m],
+    /// and their box.
+    fn rehearse(&self) -> (Bounds, Option<Bounds>) {
+        let (mut beyond, mut swung) = ((Vec3::ZERO, Vec3::ZERO), None);
+        let Stage { scene, hair, body, .. } = self.stage;
+        let frames = Rehearsal::frames(scene);
+        let Some(mut rehearsal) = (frames > 0).then(|| Rehearsal::new(self.stage)).flatten() else {
+            return (beyond, swung);
+        };
+        let strands = rehearsal.strands().to_vec();
+        let end = scene.clip.as_ref().map_or(0.0, |clip| clip.duration());
+        let at = |frame: usize| (frame as f64 / rehearsal::RATE).min(end);
+        for frame in 0..=frames {
+            let (from, to) = (at(frame.saturating_sub(1)), at(frame));
+            let pose = body.pose().at(scene, to);
+            let anchor = pose.as_ref().map_or(body.pose().rest_anchor(), |pose| pose.anchor);
+            let posed = scene.body.as_ref().zip(pose).map(|(body, pose)| Posed::new(body, pose));
+            let now = posed.as_ref().or(self.first.as_ref());
+            let root = |&(groom, strand): &(usize, usize)| {
+                let (translation, rotation) = self.root(hair[groom].groom(), strand, now);
+                RigidTransform { translation, rotation }
+            };
+            let roots: Vec<RigidTransform> = strands.iter().map(root).collect();
+            if frame == 0 {
+                rehearsal.place(anchor, &roots);
+                continue;
+            }
+            if let Some(Some(cut)) = body.pose().cut(scene, (from, to)).get(body.pose().anchor_joint()) {
+                rehearsal.teleport(*cut);
+            }
+            let time = (frame - 1) as f64 / rehearsal::RATE;
+            let box_of_points = rehearsal.step(time, anchor, &roots).iter().copied().fold(None, around);
+            let rigid = strands.iter().zip(&roots).fold(None, |bounds, (&(groom, strand), root)| {
+                carried(hair[groom].groom().strand(strand), root).fold(bounds, around)
+            });
+            if let (Some(points), Some(rigid)) = (box_of_points, rigid) {
+                beyond = (beyond.0.max(rigid.0 - points.0), beyond.1.max(points.1 - rigid.1));
+                swung = Some(swung.map_or(points, |swung| join(swung, points)));
+            }
+        }
+        (beyond, swung)
     }
 
     /// The body at `time` [s]; `None` without a motion.
@@ -141,27 +172,12 @@ impl<'a> Subject<'a> {
         Some(Posed::new(scene.body.as_ref()?, body.pose().at(scene, time)?))
     }
 
-    /// Extends `bounds` by the hair of a groom, with the body in the second of three poses, one [`INTERVAL`] apart.
-    fn hair_bounds(
-        &self,
-        hair: &StagedHair,
-        poses: [Option<&Posed>; 3],
-        bounds: Option<Bounds>,
-    ) -> Option<Bounds> {
-        let groom = hair.groom();
+    /// Extends `bounds` by the hair of a groom that moves rigidly with its roots on the body `now`.
+    fn hair_bounds(&self, groom: &Groom, now: Option<&Posed>, bounds: Option<Bounds>) -> Option<Bounds> {
         let every = groom.strand_count().div_ceil(SAMPLES).max(1);
         (0..groom.strand_count()).step_by(every).fold(bounds, |bounds, s| {
-            let strand = groom.strand(s);
-            let [(before, _), (root, turn), (after, _)] = poses.map(|pose| self.root(groom, s, pose));
-            let length: f32 = strand.windows(2).map(|w| w[0].distance(w[1])).sum();
-            let carried = strand.iter().map(|p| root + turn * (*p - strand[0]));
-            // An acceleration like that of gravity throws hair to its length, in the wind and without it.
-            let acceleration = (after - 2.0 * root + before) / (INTERVAL * INTERVAL) as f32;
-            let thrown = (-acceleration / STANDARD_GRAVITY).clamp_length_max(1.0);
-            let pulls = [self.blown, thrown, (self.blown + thrown).clamp_length_max(1.0), self.fallen];
-            let pulled =
-                pulls.into_iter().filter(|pull| *pull != Vec3::ZERO).map(|pull| root + pull * length);
-            carried.chain(pulled).fold(bounds, around)
+            let (translation, rotation) = self.root(groom, s, now);
+            carried(groom.strand(s), &RigidTransform { translation, rotation }).fold(bounds, around)
         })
     }
 
@@ -173,6 +189,11 @@ impl<'a> Subject<'a> {
         let (before, now) = (first.corners(root.triangle), now.corners(root.triangle));
         (root.position(now), (root.frame(now) * root.frame(before).inverse()).normalize())
     }
+}
+
+/// The points of a strand that moves rigidly with its root.
+fn carried<'a>(strand: &'a [Vec3], root: &'a RigidTransform) -> impl Iterator<Item = Vec3> + 'a {
+    strand.iter().map(|p| root.translation + root.rotation * (*p - strand[0]))
 }
 
 /// Extends a box by a point, if the point is finite.

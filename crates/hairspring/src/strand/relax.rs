@@ -21,9 +21,9 @@ use super::{
     colliders::{contact, surface_displacement},
     post_solve::{Particle, SegmentLimit},
     tether::apply_lra,
-    tile::{Tile, state},
+    tile::{Tile, rest, state},
 };
-use crate::simd::lanes::{F, Mask, Simd, V3};
+use crate::simd::lanes::{F, Mask, Simd, V3, load};
 
 /// A correction of the point at the outer end of a segment.
 pub struct Correction<S: Simd> {
@@ -41,7 +41,8 @@ pub struct Correction<S: Simd> {
 pub struct Relaxed<S: Simd> {
     /// Where contact moved the point, or the previous one.
     pub relaxed: Mask<S>,
-    /// The segment [m]. It keeps the length of the solve, because the next solve corrects a strain within one substep.
+    /// The segment [m]. It keeps the length of the solve, because the next solve corrects a strain within one substep; not
+    /// where that would take the point into a collider.
     pub edge: V3<S>,
     /// Factor for the velocity of the point [1].
     pub speed: F<S>,
@@ -73,13 +74,20 @@ pub fn relax<S: Simd>(
             let (length, along) = corrected.length_and_unit();
             let of_solve = link.within(size(raw));
             let length = length.max(of_solve.min(link.length)).min(of_solve.max(link.length));
-            let edge = V3::select(relaxed, along * length, corrected);
-            let world = step.root.position + (at.x + edge);
+            let mut edge = V3::select(relaxed, along * length, corrected);
+            let world = |edge: V3<S>| step.root.position + (at.x + edge);
+            let allowed = load(simd, &tile.rest[i][rest::CLEARANCE]) - link.slack();
             let mut most = size(at.displacement + (solved - old));
             for pose in step.colliders {
-                let near = contact(simd, pose, world).0.simd_lt(link.length);
-                let carried = size(surface_displacement(simd, pose, world));
+                let distance = contact(simd, pose, world(edge)).0;
+                let near = distance.simd_lt(link.length);
+                let carried = size(surface_displacement(simd, pose, world(edge)));
                 most = near.select(most.max(carried), most);
+                if distance.simd_lt(allowed).any_true() {
+                    // The other length would be deeper in the collider.
+                    let deeper = distance.simd_lt(allowed.min(contact(simd, pose, world(corrected)).0));
+                    edge = V3::select(deeper, corrected, edge);
+                }
             }
             let now = size(at.displacement + (edge - old)).max(f32::MIN_POSITIVE);
             let speed = (size(moved).mul_add(relaxation, most) / now).min(1.0);
