@@ -41,8 +41,7 @@ pub struct Correction<S: Simd> {
 pub struct Relaxed<S: Simd> {
     /// Where contact moved the point, or the previous one.
     pub relaxed: Mask<S>,
-    /// The segment [m]. It keeps the length of the solve, because the next solve corrects a strain within one substep; not
-    /// where that would take the point into a collider.
+    /// The segment [m]. It keeps the length of the solve, because the next solve corrects a strain within one substep.
     pub edge: V3<S>,
     /// Factor for the velocity of the point [1].
     pub speed: F<S>,
@@ -76,17 +75,19 @@ pub fn relax<S: Simd>(
             let length = length.max(of_solve.min(link.length)).min(of_solve.max(link.length));
             let mut edge = V3::select(relaxed, along * length, corrected);
             let world = |edge: V3<S>| step.root.position + (at.x + edge);
-            let allowed = load(simd, &tile.rest[i][rest::CLEARANCE]) - link.slack();
+            let clearance = load(simd, &tile.rest[i][rest::CLEARANCE]);
             let mut most = size(at.displacement + (solved - old));
             for pose in step.colliders {
-                let distance = contact(simd, pose, world(edge)).0;
+                let (distance, normal) = contact(simd, pose, world(edge));
                 let near = distance.simd_lt(link.length);
                 let carried = size(surface_displacement(simd, pose, world(edge)));
                 most = near.select(most.max(carried), most);
-                if distance.simd_lt(allowed).any_true() {
-                    // The other length would be deeper in the collider.
-                    let deeper = distance.simd_lt(allowed.min(contact(simd, pose, world(corrected)).0));
-                    edge = V3::select(deeper, corrected, edge);
+                // With that length, the point may be deeper in the collider than the correction left it.
+                let inside = distance.simd_lt(clearance - link.slack()) & relaxed;
+                if inside.any_true() {
+                    let allowed = clearance.min(contact(simd, pose, world(corrected)).0);
+                    let depth = inside.select((allowed - distance).max(0.0), F::splat(simd, 0.0));
+                    edge = link.swing_out(edge, normal, depth);
                 }
             }
             let now = size(at.displacement + (edge - old)).max(f32::MIN_POSITIVE);
