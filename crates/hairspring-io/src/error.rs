@@ -140,12 +140,14 @@ pub struct Problem {
     pub text: String,
     /// Whether a limit was exceeded, rather than the format violated.
     pub limit: bool,
+    /// Name of a file in the folder of this one, or below, that could not be read.
+    pub missing: Option<String>,
 }
 
 impl Problem {
     /// Creates a violation of the format at `place`.
     pub(crate) fn new(place: Place, text: impl Into<String>) -> Self {
-        Self { place, text: text.into(), limit: false }
+        Self { place, text: text.into(), limit: false, missing: None }
     }
 
     /// Creates a violation of the format in line `line`, counted from 1.
@@ -160,7 +162,13 @@ impl Problem {
 
     /// Creates a problem for data that exceeds a limit of the reader.
     pub(crate) fn limit(place: Place, text: impl Into<String>) -> Self {
-        Self { place, text: text.into(), limit: true }
+        Self { limit: true, ..Self::new(place, text) }
+    }
+
+    /// Creates a problem for the file `name`, relative to the folder of this one, that could not be read.
+    pub(crate) fn missing(name: &str) -> Self {
+        let text = format!("its buffer {name:?} was not found next to it, or is no file that can be read");
+        Self { missing: Some(name.into()), ..Self::whole(text) }
     }
 
     /// The separator between a file's name and the problem. A place continues the name; a sentence does not.
@@ -170,6 +178,11 @@ impl Problem {
 
     /// Converts the problem into an error about the file at `path`.
     pub fn in_file(self, path: &Path) -> Error {
+        let missing = self.missing.as_ref().map(|name| path.with_file_name(name));
+        if let Some(missing) = missing.filter(|missing| !missing.exists()) {
+            let why = format!("; {} names it as a buffer", path.display());
+            return Error::NotFound { path: missing, why };
+        }
         let path = path.to_owned();
         if self.limit {
             Error::Limit { path, problem: self }

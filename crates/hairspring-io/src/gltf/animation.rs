@@ -7,6 +7,7 @@ use super::{
     late::Late,
     morph::{self, ClipWeights, Morphs, Object},
     sampling::{Place, Rates, Sampling},
+    scales::Scales,
     skeleton::Skeleton,
 };
 use crate::{Problem, bytes::with_room, motion::MAX_SAMPLES, text};
@@ -16,9 +17,6 @@ use std::{
     collections::{HashMap, HashSet},
     rc::Rc,
 };
-
-/// Smallest scale of a joint along each axis [1]. Animators scale an object to 0 to hide it.
-const SMALLEST_SCALE: f32 = 1e-4;
 
 /// Joint samples that a file of any size may make: three minutes of a hundred joints.
 const SAMPLES: usize = 1_200_000;
@@ -62,6 +60,8 @@ struct LeftOut {
     repeated: usize,
     /// Keys of rotations of zero length, which are no channels.
     zero_rotations: usize,
+    /// Keys at the time of the key before.
+    repeated_times: usize,
 }
 
 /// Converts every animation to a clip of the skeleton's joints, and to weights of the morph targets of `objects`.
@@ -96,7 +96,7 @@ pub(super) fn clips(
         let joint_count = skeleton.joints.len();
         let left = most.saturating_sub(samples_so_far).checked_div(joint_count).unwrap_or(usize::MAX);
         let sampling = Sampling::new(first, last, rates, left);
-        let Sampling { start, rate, frames } = sampling;
+        let Sampling { start, rate, frames, on_key } = sampling;
         samples_so_far = frames.saturating_mul(joint_count).saturating_add(samples_so_far);
         if samples_so_far > most {
             let text = format!(
@@ -107,61 +107,23 @@ pub(super) fn clips(
         }
         late.add(&name, first, &sampling);
         let mut samples = with_room(frames * joint_count)?;
-        let mut hidden = Hidden::default();
+        let mut scales = Scales::default();
         for frame in 0..frames {
             let time = sampling.time(frame);
             let offset = samples.len();
             samples.extend_from_slice(&skeleton.defaults);
             for track in &tracks {
-                track.apply(time, &mut samples[offset + track.joint]);
+                track.apply((time, on_key), &mut samples[offset + track.joint]);
             }
-            hidden.keep_scales(&mut samples, joint_count, time);
+            scales.check(&mut samples, joint_count, time);
         }
-        if let Some(note) = hidden.note(&name, skeleton) {
-            notes.push(note);
-        }
+        notes.extend(scales.notes(&name, skeleton));
         clips.push(Clip { name, rate, joint_count, samples });
-        morphs.push(ClipWeights { start, ..weights });
+        morphs.push(ClipWeights { start, on_key, ..weights });
     }
     left_out.note(notes);
     late.note(notes);
     Ok((clips, morphs.morphs))
-}
-
-/// Joints that an animation scales to almost 0.
-#[derive(Default)]
-struct Hidden {
-    joints: HashSet<usize>,
-    /// The first joint, and the time [s].
-    first: Option<(usize, f32)>,
-}
-
-impl Hidden {
-    /// Gives joints of the last frame whose scale is almost 0 the scale of the frame before it, or 1.
-    fn keep_scales(&mut self, samples: &mut [Trs], joint_count: usize, time: f32) {
-        let (earlier, last) = samples.split_at_mut(samples.len() - joint_count);
-        for (joint, local) in last.iter_mut().enumerate() {
-            if local.scale.abs().min_element() < SMALLEST_SCALE {
-                local.scale = earlier
-                    .get(earlier.len().wrapping_sub(joint_count - joint))
-                    .map_or(Vec3::ONE, |before| before.scale);
-                self.joints.insert(joint);
-                self.first.get_or_insert((joint, time));
-            }
-        }
-    }
-
-    fn note(&self, animation: &str, skeleton: &Skeleton) -> Option<String> {
-        let (joint, time) = self.first?;
-        let more = match self.joints.len() - 1 {
-            0 => String::new(),
-            n => format!(" and {n} more"),
-        };
-        Some(format!(
-            "animation {animation:?} scales the joint {:?}{more} to 0 at {time:.2} s, which hair cannot follow; the scale before it is kept",
-            skeleton.joints[joint].name
-        ))
-    }
 }
 
 impl LeftOut {
@@ -186,6 +148,12 @@ impl LeftOut {
             notes.push(format!(
                 "{} keys of rotations are 0, 0, 0, 0, which is no rotation; the key before each is used; export the animation again",
                 self.zero_rotations
+            ));
+        }
+        if self.repeated_times > 0 {
+            notes.push(format!(
+                "{} keys of animations are at the time of the key before, so the motion jumps to them; export one key for each time",
+                self.repeated_times
             ));
         }
     }
@@ -223,7 +191,10 @@ impl Reader<'_> {
                 (_, Some(joint)) if !moved.insert((joint, property)) => left_out.repeated += 1,
                 (Path::Weights, _) => {
                     match morphs.track((animation, name), channel.sampler, node.unwrap_or_default())? {
-                        Some(track) => weights.tracks.push(track),
+                        Some(track) => {
+                            left_out.repeated_times += repeated(morphs.times(track.1));
+                            weights.tracks.push(track);
+                        }
                         None => left_out.morphs += 1,
                     }
                 }
@@ -274,6 +245,7 @@ impl Reader<'_> {
         if is_rotation {
             left_out.zero_rotations += fill_zero_rotations(&mut values, interpolation);
         }
+        left_out.repeated_times += repeated(&times);
         let keys = Rc::new(Keys { interpolation, rates: Rates::of(&times), times, values });
         self.read.insert(key, keys.clone());
         Ok(keys)
@@ -306,6 +278,11 @@ pub(super) fn not_in_order(animation: &str) -> Problem {
     ))
 }
 
+/// Number of times that are the same as the one before.
+fn repeated(times: &[f32]) -> usize {
+    times.windows(2).filter(|pair| pair[0] == pair[1]).count()
+}
+
 /// Gives keys of rotations of zero length the rotation of the key before, or of the first other one. Returns their
 /// number.
 fn fill_zero_rotations(values: &mut [Vec4], interpolation: Interpolation) -> usize {
@@ -325,8 +302,9 @@ fn fill_zero_rotations(values: &mut [Vec4], interpolation: Interpolation) -> usi
 }
 
 impl Track {
-    /// Sets this track's property of `local` to its value at `time` [s].
-    fn apply(&self, time: f32, local: &mut Trs) {
+    /// Sets this track's property of `local` to its value at a time [s], or at a key that is as near as the second number
+    /// [s].
+    fn apply(&self, time: (f32, f32), local: &mut Trs) {
         let value = self.at(time);
         match self.property {
             Path::Translation => local.translation = value.truncate(),
@@ -339,9 +317,9 @@ impl Track {
         }
     }
 
-    fn at(&self, time: f32) -> Vec4 {
+    fn at(&self, (time, on_key): (f32, f32)) -> Vec4 {
         let Keys { interpolation, times, values, .. } = &*self.keys;
-        let place = Place::new(times, time);
+        let place = Place::new(times, time, on_key);
         let (i, j, t) = (place.before, place.after, place.fraction);
         match interpolation {
             Interpolation::Step => values[i],

@@ -101,9 +101,5 @@ fn chunks(data: &[u8]) -> Result<(&[u8], Option<&[u8]>), Problem> {
 /// Reads the file `name`, or the file with the literal name `uri`: some programs do not encode it.
 fn beside(name: &str, uri: &str, sibling: &dyn Fn(&str) -> Option<Vec<u8>>) -> Result<Vec<u8>, Problem> {
     let literal = || (name != uri).then(|| sibling(uri)).flatten();
-    sibling(name).or_else(literal).ok_or_else(|| {
-        Problem::whole(format!(
-            "its buffer {name:?} was not found next to it, or is no file that can be read"
-        ))
-    })
+    sibling(name).or_else(literal).ok_or_else(|| Problem::missing(name))
 }

@@ -1,10 +1,13 @@
 //! Strands from the lines of a glTF file (glTF 2.0 §3.7.2.1): primitives of the modes LINES, LINE_STRIP and LINE_LOOP.
 
 use super::{
+    HALF_TURN,
     accessor::{Buffers, accessor, colors, components},
-    given,
+    given, instances,
     json::{Document, Node, Primitive},
     nodes::{Walk, local, walk},
+    primitive::place,
+    turned_note,
 };
 use crate::{
     Place, Problem,
@@ -60,6 +63,10 @@ pub(super) fn read(document: &Document, buffers: &Buffers<'_>) -> Result<Read, P
             build.node(node, n, world[n])?;
         }
     }
+    if document.looks_backward() {
+        build.groom.points.iter_mut().for_each(|p| *p = HALF_TURN * *p);
+        notes.push(turned_note());
+    }
     build.finish(notes)
 }
 
@@ -74,11 +81,13 @@ struct Found {
     mapped: usize,
     /// Primitives of triangles or points.
     others: usize,
+    /// Primitives of lines without positions.
+    positionless: usize,
     /// Closed lines.
     loops: usize,
     /// Lines that a skin or morph targets would move.
     deformed: usize,
-    /// Nodes that draw copies of their mesh.
+    /// Nodes that draw copies of a mesh with a skin.
     copies: usize,
     /// Nodes with meshes that are hidden.
     hidden: usize,
@@ -106,13 +115,19 @@ struct Build<'a> {
 impl Build<'_> {
     /// Appends the lines of a node, which are a group with its name or that of its mesh.
     fn node(&mut self, node: &Node, index: usize, world: Affine3A) -> Result<(), Problem> {
-        let Some(mesh) = node.mesh else { return Ok(()) };
+        let Some(mesh_index) = node.mesh else { return Ok(()) };
         let missing =
-            || Problem::whole(format!("node {index} names mesh {mesh}, which the file does not have"));
-        let mesh = self.document.meshes.get(mesh).ok_or_else(missing)?;
-        self.found.copies += usize::from(node.has_instances());
-        // A skin replaces the transform of the node (§3.7.3.3).
-        let world = if node.skin.is_some() { Affine3A::IDENTITY } else { world };
+            || Problem::whole(format!("node {index} names mesh {mesh_index}, which the file does not have"));
+        let mesh = self.document.meshes.get(mesh_index).ok_or_else(missing)?;
+        // A skin replaces the transform of the node (§3.7.3.3), and of its copies.
+        self.found.copies += usize::from(node.skin.is_some() && node.instances().is_some());
+        let copies = match node.skin {
+            Some(_) => vec![Affine3A::IDENTITY],
+            None => instances::read(self.document, self.buffers, node, index)?
+                .into_iter()
+                .map(|copy| world * copy)
+                .collect(),
+        };
         let before = self.groom.strand_count();
         for primitive in &mesh.primitives {
             if !is_lines(primitive) {
@@ -120,7 +135,11 @@ impl Build<'_> {
                 continue;
             }
             self.found.deformed += usize::from(node.skin.is_some() || !primitive.targets.is_empty());
-            self.lines(primitive, world)?;
+        }
+        for world in copies {
+            for (k, primitive) in mesh.primitives.iter().enumerate().filter(|(_, p)| is_lines(p)) {
+                self.lines(primitive, world, &place(mesh, mesh_index, k))?;
+            }
         }
         let strands = self.groom.strand_count();
         if strands > before {
@@ -137,10 +156,13 @@ impl Build<'_> {
         Ok(())
     }
 
-    /// Appends the lines of a primitive.
-    fn lines(&mut self, primitive: &Primitive, world: Affine3A) -> Result<(), Problem> {
+    /// Appends the lines of a primitive. `place` names it in error messages.
+    fn lines(&mut self, primitive: &Primitive, world: Affine3A, place: &str) -> Result<(), Problem> {
         let attributes = &primitive.attributes;
-        let Some(position) = attributes.position else { return Ok(()) };
+        let Some(position) = attributes.position else {
+            self.found.positionless += 1;
+            return Ok(());
+        };
         self.found.lines += 1;
         let corners = match primitive.indices {
             Some(indices) => accessor(self.document, indices, "indices")?.count,
@@ -168,13 +190,15 @@ impl Build<'_> {
             (uvs.as_ref().map(|uvs| uvs.len()), "texture coordinates"),
         ] {
             if let Some(given) = given.filter(|given| *given != positions.len()) {
-                let text = format!("lines have {} positions but {given} {what}", positions.len());
-                return Err(Problem::whole(text));
+                return Err(Problem::whole(format!(
+                    "{place}: its lines have {} positions but {given} {what}; export it again",
+                    positions.len()
+                )));
             }
         }
         self.found.colored += usize::from(colors.is_some());
         self.found.thick += usize::from(radii.is_some());
-        let Chains { order, offsets } = self.chains(primitive, &positions)?;
+        let Chains { order, offsets } = self.chains(primitive, &positions, place)?;
         let size = world.matrix3.determinant().abs().cbrt();
         for first in offsets.iter().take(offsets.len() - 1) {
             let uv = uvs.as_ref().map(|uvs| uvs[order[*first as usize] as usize]);
@@ -193,7 +217,7 @@ impl Build<'_> {
     }
 
     /// Returns the polylines of a primitive.
-    fn chains(&mut self, primitive: &Primitive, positions: &[Vec3]) -> Result<Chains, Problem> {
+    fn chains(&mut self, primitive: &Primitive, positions: &[Vec3], place: &str) -> Result<Chains, Problem> {
         let count = positions.len();
         let mut indices: Vec<u32> = match primitive.indices {
             Some(indices) => {
@@ -203,7 +227,9 @@ impl Build<'_> {
             None => (0..count as u32).collect(),
         };
         if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
-            return Err(Problem::whole(format!("a line names vertex {i} of an object of {count}")));
+            return Err(Problem::whole(format!(
+                "{place}: a line names vertex {i} of {count}; export it again"
+            )));
         }
         if primitive.mode != Some(LINES) {
             self.found.loops += usize::from(primitive.mode == Some(LINE_LOOP));
@@ -286,6 +312,10 @@ impl Build<'_> {
             "primitives of triangles or points are left out, because a groom is read from lines",
         );
         note(
+            found.positionless,
+            "primitives of lines have no positions (POSITION) and are left out; export the file again",
+        );
+        note(
             found.incomplete,
             "primitives of lines end with half a segment, which is left out; export the file again",
         );
@@ -296,7 +326,7 @@ impl Build<'_> {
         );
         note(
             found.copies,
-            "nodes draw copies of their mesh (EXT_mesh_gpu_instancing), of which one is read; export without instancing",
+            "nodes draw copies of a mesh with a skin (EXT_mesh_gpu_instancing), of which one is read; export without instancing",
         );
         if found.colored < found.lines {
             groom.colors.clear();

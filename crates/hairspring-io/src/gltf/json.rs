@@ -2,7 +2,10 @@
 //! is parsed: textures, cameras, lights, extras, attributes and extensions of exporters. A file is therefore
 //! never refused because of an object that is not used here.
 
+mod animation;
+
 use crate::Problem;
+pub(super) use animation::{Animation, Interpolation, Path};
 use serde::{Deserialize, de::IgnoredAny};
 
 /// A document.
@@ -30,7 +33,23 @@ pub(super) struct Document {
     #[serde(default)]
     pub buffers: Vec<Buffer>,
     #[serde(default)]
+    extensions: DocumentExtensions,
+    #[serde(default)]
     extensions_required: Vec<String>,
+}
+
+#[derive(Default, Deserialize)]
+struct DocumentExtensions {
+    /// A VRM 0.x avatar. Version 1.0 is `VRMC_vrm`.
+    #[serde(rename = "VRM")]
+    vrm: Option<IgnoredAny>,
+}
+
+impl Document {
+    /// Whether the file is a VRM 0.x avatar, which looks along -Z. All others look along +Z, as glTF does (§3.4).
+    pub(super) fn looks_backward(&self) -> bool {
+        self.extensions.vrm.is_some()
+    }
 }
 
 #[derive(Deserialize)]
@@ -67,9 +86,24 @@ pub(super) struct Node {
 #[derive(Default, Deserialize)]
 struct NodeExtensions {
     #[serde(rename = "EXT_mesh_gpu_instancing")]
-    instancing: Option<IgnoredAny>,
+    instancing: Option<Instancing>,
     #[serde(rename = "KHR_node_visibility")]
     visibility: Option<Visibility>,
+}
+
+#[derive(Deserialize)]
+struct Instancing {
+    #[serde(default)]
+    attributes: Instances,
+}
+
+/// Accessors of the transforms of a node's copies (`EXT_mesh_gpu_instancing`).
+#[derive(Default, Deserialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub(super) struct Instances {
+    pub translation: Option<usize>,
+    pub rotation: Option<usize>,
+    pub scale: Option<usize>,
 }
 
 #[derive(Deserialize)]
@@ -78,9 +112,9 @@ struct Visibility {
 }
 
 impl Node {
-    /// Whether the node draws copies of its mesh.
-    pub(super) fn has_instances(&self) -> bool {
-        self.extensions.instancing.is_some()
+    /// The copies of its mesh that the node draws in the place of one.
+    pub(super) fn instances(&self) -> Option<&Instances> {
+        self.extensions.instancing.as_ref().map(|instancing| &instancing.attributes)
     }
 
     /// Whether the node is drawn, with what is below it.
@@ -176,56 +210,6 @@ pub(super) struct Target {
 pub(super) struct Skin {
     pub joints: Vec<usize>,
     pub inverse_bind_matrices: Option<usize>,
-}
-
-#[derive(Deserialize)]
-pub(super) struct Animation {
-    pub name: Option<String>,
-    #[serde(default)]
-    pub channels: Vec<Channel>,
-    #[serde(default)]
-    pub samplers: Vec<Sampler>,
-}
-
-#[derive(Deserialize)]
-pub(super) struct Channel {
-    pub sampler: usize,
-    pub target: ChannelTarget,
-}
-
-#[derive(Deserialize)]
-pub(super) struct ChannelTarget {
-    /// `None` if the channel is for an extension, such as `KHR_animation_pointer`.
-    pub node: Option<usize>,
-    pub path: Path,
-}
-
-#[derive(Clone, Copy, Deserialize, Eq, Hash, PartialEq)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum Path {
-    Translation,
-    Rotation,
-    Scale,
-    Weights,
-    #[serde(other)]
-    Other,
-}
-
-#[derive(Deserialize)]
-pub(super) struct Sampler {
-    pub input: usize,
-    pub output: usize,
-    #[serde(default)]
-    pub interpolation: Interpolation,
-}
-
-#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, Hash, PartialEq)]
-#[serde(rename_all = "UPPERCASE")]
-pub(super) enum Interpolation {
-    #[default]
-    Linear,
-    Step,
-    CubicSpline,
 }
 
 #[derive(Default, Deserialize)]
@@ -343,8 +327,9 @@ pub(super) struct Buffer {
 
 /// Required extensions that change nothing which is read here, by the beginning of their names: textures,
 /// materials, lights, metadata, sound, physics and behavior.
-const UNUSED: [&str; 23] = [
-    "KHR_mesh_quantization", // Read: an accessor has any component type.
+const UNUSED: [&str; 24] = [
+    "KHR_mesh_quantization",   // Read: an accessor has any component type.
+    "EXT_mesh_gpu_instancing", // Read.
     "KHR_texture_",
     "EXT_texture_",
     "MSFT_texture_",

@@ -12,16 +12,20 @@ pub(super) struct Late {
     held: Option<(String, usize)>,
     /// The same of those that begin at their first key.
     cut: Option<(String, usize)>,
+    /// The same of those with keys before 0 s.
+    early: Option<(String, usize)>,
 }
 
 impl Late {
     /// Adds an animation with its first key at `first` [s].
     pub(super) fn add(&mut self, name: &str, first: f32, sampling: &Sampling) {
-        if first < PAUSE {
+        if (0.0..PAUSE).contains(&first) {
             return;
         }
         let has_key = format!("animation {name:?} has its first key at {first:.2} s");
-        let (slot, text) = if sampling.start < first {
+        let (slot, text) = if first < 0.0 {
+            (&mut self.early, format!("{has_key} and begins there, at frame 1; move its keys to 0 s"))
+        } else if sampling.start < first {
             let frame = (f64::from(first) * sampling.rate).round();
             (
                 &mut self.held,
@@ -44,7 +48,7 @@ impl Late {
     }
 
     pub(super) fn note(self, notes: &mut Vec<String>) {
-        for (text, others) in self.held.into_iter().chain(self.cut) {
+        for (text, others) in [self.held, self.cut, self.early].into_iter().flatten() {
             notes.push(match others {
                 0 => text,
                 n => format!("{text} ({n} other animations are like this)"),

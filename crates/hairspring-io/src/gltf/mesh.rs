@@ -2,10 +2,11 @@
 
 use super::{
     accessor::{Buffers, accessor, colors, components},
-    given,
+    given, instances,
     json::{self, Attributes, Document, Path, Primitive, Target, compressed},
     mesh_notes::LeftOut,
     morph,
+    primitive::{NodeOf, name},
     skeleton::{Skeleton, SkinPlace},
 };
 use crate::{Place, Problem, bytes::with_room, color, obj::DEFAULT_COLOR, skin::four_heaviest, text};
@@ -18,6 +19,9 @@ const MAX_ELEMENTS: usize = 8_000_000;
 
 /// Vertices, and triangles, that a file of any size may have. A larger file may have one more for each byte.
 const ELEMENTS: usize = 1_000_000;
+
+/// Difference of a sum of weights from 1 that is due to rounding: weights may have 8 bits.
+const WEIGHT_ROUNDING: f32 = 0.05;
 
 /// A mesh, and what moves its vertices.
 pub(super) struct Moved {
@@ -57,12 +61,19 @@ pub(super) fn read(
         let missing =
             || Problem::whole(format!("node {index} names mesh {mesh}, which the file does not have"));
         let named = document.meshes.get(mesh).ok_or_else(missing)?;
-        build.left_out.copies += usize::from(node.has_instances());
-        let node = NodeOf { node, index, mesh: named, mesh_index: mesh };
-        // Primitives of one mesh often share their vertices, and only differ in indices and material.
-        let mut shared = HashMap::new();
-        for primitive in &named.primitives {
-            build.primitive(&node, primitive, &mut shared)?;
+        // A skin moves its mesh to the joints, wherever its node and copies of the node are.
+        build.left_out.copies += usize::from(node.skin.is_some() && node.instances().is_some());
+        let copies = match node.skin {
+            Some(_) => vec![Affine3A::IDENTITY],
+            None => instances::read(document, buffers, node, index)?,
+        };
+        for copy in copies {
+            // Primitives of one mesh often share their vertices, and only differ in indices and material.
+            let mut shared = HashMap::new();
+            for (k, primitive) in named.primitives.iter().enumerate() {
+                let node = NodeOf { node, index, mesh: named, mesh_index: mesh, copy, primitive: k };
+                build.primitive(&node, primitive, &mut shared)?;
+            }
         }
         if !build.targets.is_empty() {
             objects.push(morph::Object { node: index, targets: std::mem::take(&mut build.targets) });
@@ -78,22 +89,6 @@ pub(super) fn read(
         given.filter(|(n, _)| *n != Vec3::ZERO).for_each(|(n, slot)| *slot = n);
     }
     Ok(Moved { mesh, joints, weights, objects })
-}
-
-/// A node that holds a mesh.
-struct NodeOf<'a> {
-    node: &'a json::Node,
-    index: usize,
-    mesh: &'a json::Mesh,
-    mesh_index: usize,
-}
-
-impl NodeOf<'_> {
-    /// The default weights of its morph targets.
-    fn weights(&self) -> &[f32] {
-        let weights = self.node.weights.as_ref().or(self.mesh.weights.as_ref());
-        weights.map_or(&[][..], |w| w)
-    }
 }
 
 /// What a mesh consists of, except its triangles.
@@ -124,7 +119,10 @@ impl<'a> Build<'a> {
         primitive: &'a Primitive,
         shared: &mut HashMap<Vertices<'a>, (usize, usize)>,
     ) -> Result<(), Problem> {
-        let Some(position) = primitive.attributes.position else { return Ok(()) };
+        let Some(position) = primitive.attributes.position else {
+            self.left_out.positionless += 1;
+            return Ok(());
+        };
         if primitive.is_only_draco(self.document) {
             return Err(compressed("KHR_draco_mesh_compression"));
         }
@@ -154,7 +152,8 @@ impl<'a> Build<'a> {
                 vertices
             }
         };
-        let transform = placed.map_or_else(|| self.skeleton.rigid(node.index).0, |place| place.placed);
+        let transform =
+            placed.map_or_else(|| self.skeleton.rigid(node.index).0 * node.copy, |place| place.placed);
         self.triangles(primitive, mode, (first, count), transform.matrix3.determinant() < 0.0, node)
     }
 
@@ -172,8 +171,8 @@ impl<'a> Build<'a> {
         let mut positions = vectors(document, position, buffers, "positions")?;
         let count = positions.len();
         let whole = |given: usize, what: &str| {
-            let text = format!("a mesh has {count} positions but {given} {what}");
-            if given == count { Ok(()) } else { Err(Problem::whole(text)) }
+            let text = format!("it has {count} positions but {given} {what}; export it again");
+            if given == count { Ok(()) } else { Err(node.wrong(&text)) }
         };
         let mut normals = match primitive.attributes.normal {
             Some(normals) => vectors(document, normals, buffers, "normals")?,
@@ -181,19 +180,24 @@ impl<'a> Build<'a> {
         };
         whole(normals.len(), "normals")?;
         self.morph(node, primitive, &mut positions, &mut normals)?;
-        if positions.iter().any(|p| !p.is_finite()) {
-            return Err(Problem::whole("a vertex position is not finite"));
+        if let Some(v) = positions.iter().position(|p| !p.is_finite()) {
+            return Err(node.wrong(&format!(
+                "the position of vertex {v} is not finite; repair the mesh in the modeling program"
+            )));
         }
         // Transform into the rest pose: by the skin's bind space, or by the node that holds the mesh.
         let (placed, own_joint) = match skin {
             Some(skin) => (skin.placed, 0),
-            None => self.skeleton.rigid(node.index),
+            None => {
+                let (placed, joint) = self.skeleton.rigid(node.index);
+                (placed * node.copy, joint)
+            }
         };
         let turned = placed.matrix3.inverse().transpose();
         normals.iter_mut().for_each(|n| *n = (turned * *n).normalize_or_zero());
         positions.iter_mut().for_each(|p| *p = placed.transform_point3(*p));
         let corrections = match skin {
-            Some(skin) => self.weigh(primitive, skin, &mut positions, &mut normals)?,
+            Some(skin) => self.weigh(node, primitive, skin, &mut positions, &mut normals)?,
             None => {
                 self.joints.resize(first + count, [own_joint, 0, 0, 0]);
                 self.weights.resize(first + count, [1.0, 0.0, 0.0, 0.0]);
@@ -208,7 +212,7 @@ impl<'a> Build<'a> {
             morph::add_targets(
                 &mut self.targets,
                 (document, buffers),
-                (primitive, node.weights()),
+                (primitive, &node.place(), node.weights()),
                 (first, count),
                 rest,
             )?;
@@ -267,8 +271,12 @@ impl<'a> Build<'a> {
                 let Some(accessor) = accessor else { continue };
                 let added = vectors(self.document, accessor, self.buffers, what)?;
                 if added.len() != values.len() {
-                    let text = format!("a mesh has {} vertices but {} {what}", values.len(), added.len());
-                    return Err(Problem::whole(text));
+                    let text = format!(
+                        "it has {} vertices but {} {what}; export it again",
+                        values.len(),
+                        added.len()
+                    );
+                    return Err(node.wrong(&text));
                 }
                 values.iter_mut().zip(added).for_each(|(value, added)| *value += added * *weight);
             }
@@ -285,6 +293,7 @@ impl<'a> Build<'a> {
     /// vertex.
     fn weigh(
         &mut self,
+        node: &NodeOf<'_>,
         primitive: &Primitive,
         skin: &SkinPlace,
         positions: &mut [Vec3],
@@ -299,9 +308,8 @@ impl<'a> Build<'a> {
             ));
         }
         if sets.iter().any(|(j, w)| j.len() != count || w.len() != count) {
-            return Err(Problem::whole(
-                "a mesh that has a skin needs joints and weights for each of its vertices",
-            ));
+            let text = "it has a skin and needs joints and weights for each of its vertices; export it again";
+            return Err(node.wrong(text));
         }
         let slots = u16::try_from(skin.joints.len()).unwrap_or(u16::MAX);
         let joint_of = |slot: u16| skin.joints.get(usize::from(slot)).copied().unwrap_or(0);
@@ -315,8 +323,9 @@ impl<'a> Build<'a> {
                     // Programs leave any number in the slots that they do not use.
                     let (slot, used) = (*j as u16, w > 0.0);
                     if used && *j >= f64::from(slots) {
-                        let text = format!("a vertex names joint {j} of a skin of {slots}");
-                        return Err(Problem::whole(text));
+                        return Err(node.wrong(&format!(
+                            "vertex {v} names joint {j} of a skin of {slots}; export it together with all joints"
+                        )));
                     }
                     pairs.push((if slot < slots { slot } else { 0 }, w as f32));
                 }
@@ -324,6 +333,8 @@ impl<'a> Build<'a> {
             let used = pairs.iter().filter(|(_, w)| *w > 0.0).count();
             self.left_out.unweighted += usize::from(used == 0);
             self.left_out.crowded += usize::from(used > 4);
+            let sum: f32 = pairs.iter().map(|(_, w)| w).sum();
+            self.left_out.unnormalized += usize::from(used > 0 && (sum - 1.0).abs() > WEIGHT_ROUNDING);
             let (slots, weights) = four_heaviest(pairs);
             if !skin.corrections.is_empty() {
                 let correction =
@@ -369,7 +380,7 @@ impl<'a> Build<'a> {
             None => (0..count as u32).collect(),
         };
         if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
-            return Err(Problem::whole(format!("a triangle names vertex {i} of a mesh of {count}")));
+            return Err(node.wrong(&format!("a triangle names vertex {i} of {count}; export it again")));
         }
         let mut triangles: Vec<[u32; 3]> = with_room(of_corners)?;
         // Strips and fans: glTF 2.0 §3.7.2.1. A triangle of a strip with two equal corners joins two strips.
@@ -407,20 +418,20 @@ impl<'a> Build<'a> {
         let default = json::Material::default();
         let material = match primitive.material {
             Some(index) => self.document.materials.get(index).ok_or_else(|| {
-                Problem::whole(format!("a mesh names material {index}, which the file does not have"))
+                node.wrong(&format!("it names material {index}, which the file does not have"))
             })?,
             None => &default,
         };
         let surface = &material.pbr_metallic_roughness;
         let [r, g, b, _] = surface.base_color_factor;
-        let mesh_name = given(&node.mesh.name).map_or_else(|| format!("mesh{}", node.mesh_index), text::name);
-        let name = match given(&material.name) {
+        let mesh_name = name(node.mesh, node.mesh_index);
+        let part_name = match given(&material.name) {
             Some(material) => format!("{mesh_name}.{}", text::name(material)),
             None => mesh_name,
         };
         let color = if primitive.material.is_some() { Vec3::new(r, g, b) } else { DEFAULT_COLOR };
         self.mesh.parts.push(Part {
-            name,
+            name: part_name,
             triangles: first_triangle as u32..self.mesh.triangles.len() as u32,
             color,
             roughness: surface.roughness_factor,

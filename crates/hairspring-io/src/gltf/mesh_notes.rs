@@ -3,14 +3,18 @@
 /// Counts of objects that are ignored or changed while reading.
 #[derive(Default)]
 pub(super) struct LeftOut {
-    /// Nodes that draw copies of their mesh.
+    /// Nodes that draw copies of a mesh with a skin.
     pub copies: usize,
     /// Primitives of points and lines.
     pub lines: usize,
+    /// Primitives without positions.
+    pub positionless: usize,
     /// Primitives without joints in a mesh with a skin.
     pub rigid: usize,
     /// Vertices with a weight that is negative or not finite.
     pub wrong_weights: usize,
+    /// Vertices whose weights do not sum to 1.
+    pub unnormalized: usize,
     /// Vertices with a skin but without a weight.
     pub unweighted: usize,
     /// Vertices that follow more than four joints.
@@ -33,8 +37,12 @@ impl LeftOut {
             "primitives of lines or points are left out; convert them to triangles to keep them",
         );
         note(
+            self.positionless,
+            "primitives have no positions (POSITION) and are left out; export the file again",
+        );
+        note(
             self.copies,
-            "nodes draw copies of their mesh (EXT_mesh_gpu_instancing), of which one is read; export without instancing",
+            "nodes draw copies of a mesh with a skin (EXT_mesh_gpu_instancing), of which one is read; export without instancing",
         );
         note(
             self.rigid,
@@ -43,6 +51,10 @@ impl LeftOut {
         note(
             self.wrong_weights,
             "vertices of skinned meshes have weights that are below 0 or not finite, which count as 0; normalize the weights in the modeling program",
+        );
+        note(
+            self.unnormalized,
+            "vertices of skinned meshes have weights that do not sum to 1 and are scaled to that sum; normalize the weights in the modeling program",
         );
         note(
             self.unweighted,

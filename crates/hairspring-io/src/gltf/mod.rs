@@ -9,18 +9,21 @@ mod accessor;
 mod animation;
 mod container;
 mod curves;
+mod instances;
 mod json;
 mod late;
 mod mesh;
 mod mesh_notes;
 mod morph;
 mod nodes;
+mod primitive;
 mod sampling;
+mod scales;
 mod skeleton;
 mod uri;
 
-use crate::{Problem, strands::Read};
-use glam::Affine3A;
+use crate::{Problem, strands::Read, units::apply_to_body};
+use glam::{Affine3A, Quat};
 use hairspring::{
     body::{Body, Clip, Skin},
     groom::Groom,
@@ -61,7 +64,21 @@ pub fn parse(
     let (clips, morphs) = animation::clips(&document, &buffers, &skeleton, objects, &mut notes)?;
     let skin = Skin { joints, weights, inverse_bind: skeleton.inverse_bind };
     let body = Body { mesh, joints: skeleton.joints, skin: Some(skin) };
-    Ok((Character { body, clips, morphs, vertex_cache: None }, notes))
+    let mut character = Character { body, clips, morphs, vertex_cache: None };
+    if document.looks_backward() {
+        apply_to_body(&mut character.body, &mut character.clips, 1.0, HALF_TURN);
+        character.morphs.convert(1.0, HALF_TURN);
+        notes.push(turned_note());
+    }
+    Ok((character, notes))
+}
+
+/// A rotation by 180° about Y.
+const HALF_TURN: Quat = Quat::from_xyzw(0.0, 1.0, 0.0, 0.0);
+
+/// The note about a file that looks along -Z.
+fn turned_note() -> String {
+    "the file is a VRM 0.x avatar, which looks along -Z; it is turned to look along +Z; hair that was made for it as it is needs `transform.rotation = [0, 180, 0]`".into()
 }
 
 /// Reads the lines of a glTF file as the strands of a groom, root first. The format is in meters, Y up. `sibling` returns the

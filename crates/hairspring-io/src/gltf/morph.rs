@@ -60,16 +60,18 @@ struct Keys {
 pub(super) struct ClipWeights {
     /// Time of the first frame [s].
     pub start: f32,
+    /// Distance of a key from a frame at which the frame has its value [s].
+    pub on_key: f32,
     /// Indices of an object and of its keys.
     pub tracks: Vec<(usize, usize)>,
 }
 
-/// Adds the morph targets of a primitive to `targets`. Its default weights, its first vertex and their number are given.
+/// Adds the morph targets of a primitive to `targets`. Its place in a sentence, its default weights, its first vertex and their number are given.
 /// `rest` moves a vector of a vertex to the rest pose.
 pub(super) fn add_targets(
     targets: &mut Vec<Target>,
     (document, buffers): (&Document, &Buffers<'_>),
-    (primitive, defaults): (&Primitive, &[f32]),
+    (primitive, place, defaults): (&Primitive, &str, &[f32]),
     (first, count): (usize, usize),
     rest: impl Fn(usize, Vec3) -> Vec3,
 ) -> Result<(), Problem> {
@@ -81,11 +83,10 @@ pub(super) fn add_targets(
         let Some(accessor) = target.position else { continue };
         let added = vectors(document, accessor, buffers, "positions of a morph target")?;
         if added.len() != count || !added.iter().all(|by| by.is_finite()) {
-            let text = format!(
-                "a mesh has {count} vertices but {} positions of a morph target, or they are not finite",
+            return Err(Problem::whole(format!(
+                "morph target {k} of {place} has {} positions for {count} vertices, or they are not finite; export it again",
                 added.len()
-            );
-            return Err(Problem::whole(text));
+            )));
         }
         // Targets that share an array are kept one by one.
         let nonzero = added.iter().filter(|by| **by != Vec3::ZERO).count();
@@ -208,7 +209,7 @@ impl Morphs {
     fn add(&self, clip: &ClipWeights, time: f32, positions: &mut [Vec3]) {
         for (object, keys) in &clip.tracks {
             let keys = &self.keys[*keys];
-            let place = Place::new(&keys.times, time);
+            let place = Place::new(&keys.times, time, clip.on_key);
             for (k, target) in self.objects[*object].targets.iter().enumerate() {
                 let weight = keys.weight(&place, k) - target.default;
                 if weight != 0.0 {

@@ -27,39 +27,60 @@ const ROUNDING: f64 = 0.01;
 /// Difference of a key from a sample that is due to rounding [s].
 const ON_SAMPLE: f64 = 1e-4;
 
-/// Time before a key from which on its value is used [s]: [`ON_SAMPLE`], and the rounding of the times.
-const ON_KEY: f32 = 1.5e-4;
+/// The same in a file whose times are whole milliseconds [s].
+const ON_SAMPLE_IN_MS: f64 = 5.2e-4;
 
-/// The rates that have a sample at every key: a set of indices in [`RATES`].
+/// Difference of a time from a whole millisecond that is due to single precision [ms].
+const WHOLE_MS: f64 = 0.01;
+
+/// Rounding of the times of samples in single precision [s].
+const ROUNDING_OF_TIMES: f64 = 5e-5;
+
+/// The rates that have a sample at every key: sets of indices in [`RATES`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Rates(u16);
+pub(super) struct Rates {
+    /// At every key.
+    exact: u16,
+    /// Within half a millisecond of every key, if all times are whole milliseconds.
+    in_ms: u16,
+}
 
 impl Rates {
-    pub(super) const ALL: Self = Self((1 << RATES.len()) - 1);
+    pub(super) const ALL: Self = Self { exact: (1 << RATES.len()) - 1, in_ms: (1 << RATES.len()) - 1 };
 
     /// The rates that have a sample at each of `times` [s].
     pub(super) fn of(times: &[f32]) -> Self {
-        let is_sample = |time: f64, rate: f64| {
-            let at = time * rate;
-            (at - at.round()).abs() / rate <= ON_SAMPLE
-        };
-        let mut rates = Self::ALL.0;
+        let mut rates = Self::ALL;
         for time in times.iter().map(|time| f64::from(*time)) {
+            if (1e3 * time - (1e3 * time).round()).abs() > WHOLE_MS {
+                rates.in_ms = 0;
+            }
             for (k, rate) in RATES.iter().enumerate() {
-                if rates >> k & 1 == 1 && !is_sample(time, *rate) {
-                    rates &= !(1 << k);
+                let distance = (time * rate - (time * rate).round()).abs() / rate;
+                if distance > ON_SAMPLE {
+                    rates.exact &= !(1 << k);
+                }
+                if distance > ON_SAMPLE_IN_MS {
+                    rates.in_ms &= !(1 << k);
                 }
             }
-            if rates == 0 {
+            if rates.exact | rates.in_ms == 0 {
                 break;
             }
         }
-        Self(rates)
+        rates
     }
 
     /// The rates of both sets.
     pub(super) fn and(self, other: Self) -> Self {
-        Self(self.0 & other.0)
+        Self { exact: self.exact & other.exact, in_ms: self.in_ms & other.in_ms }
+    }
+
+    /// The preferred rate [Hz], and the largest distance of a key from a sample at it [s].
+    fn best(self) -> Option<(f64, f64)> {
+        let first = |rates: u16| RATES.get(rates.trailing_zeros() as usize).copied();
+        let exact = first(self.exact).map(|rate| (rate, ON_SAMPLE));
+        exact.or_else(|| first(self.in_ms).map(|rate| (rate, ON_SAMPLE_IN_MS)))
     }
 }
 
@@ -72,23 +93,26 @@ pub(super) struct Sampling {
     pub rate: f64,
     /// Number of samples.
     pub frames: usize,
+    /// Distance of a key from a sample at which the sample has its value [s].
+    pub on_key: f32,
 }
 
 impl Sampling {
     /// Samples an animation with keys from `first` to `last` [s]. It begins at 0, as all animations do (glTF 2.0 §3.11),
     /// unless that takes more than `most` samples. At most one more is needed for one of the `rates` of its keys.
     pub(super) fn new(first: f32, last: f32, rates: Rates, most: usize) -> Self {
+        let on_key = |distance: f64| (distance + ROUNDING_OF_TIMES) as f32;
         let at_keys = |start: f32| {
-            let rate = *RATES.get(rates.0.trailing_zeros() as usize)?;
+            let (rate, distance) = rates.best()?;
             let steps = ((f64::from(last) - f64::from(start)) * rate).round();
-            Some(Self { start, rate, frames: (steps as usize).saturating_add(1) })
+            Some(Self { start, rate, frames: (steps as usize).saturating_add(1), on_key: on_key(distance) })
         };
         let at_ends = |start: f32| {
             let duration = f64::from(last) - f64::from(start);
             let steps = (duration * RATE - ROUNDING).ceil().max(0.0);
             let is_raised = (steps - duration * RATE).abs() > ROUNDING && steps > 0.0;
             let rate = if is_raised { steps / duration } else { RATE };
-            Self { start, rate, frames: (steps as usize).saturating_add(1) }
+            Self { start, rate, frames: (steps as usize).saturating_add(1), on_key: on_key(ON_SAMPLE) }
         };
         let mut ways = [first.min(0.0), first]
             .into_iter()
@@ -115,13 +139,13 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Finds `time` [s] between sorted times, of which there is at least one. A time that differs from a key only by
-    /// rounding is at that key.
-    pub(super) fn new(times: &[f32], time: f32) -> Self {
-        let next = times.partition_point(|t| *t <= time + ON_KEY);
+    /// Finds `time` [s] between sorted times, of which there is at least one. A time that is within `on_key` [s] of a key is
+    /// at that key.
+    pub(super) fn new(times: &[f32], time: f32, on_key: f32) -> Self {
+        let next = times.partition_point(|t| *t <= time + on_key);
         let (before, after) = (next.saturating_sub(1), next.min(times.len() - 1));
-        let span = times[after] - times[before];
-        let fraction = if span > 0.0 { ((time - times[before]) / span).clamp(0.0, 1.0) } else { 0.0 };
+        let (span, past) = (times[after] - times[before], time - times[before]);
+        let fraction = if span > 0.0 && past > on_key { (past / span).min(1.0) } else { 0.0 };
         Self { before, after, fraction, span }
     }
 

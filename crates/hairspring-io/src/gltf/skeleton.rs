@@ -51,8 +51,8 @@ pub(super) struct Skeleton {
     joint_of: Vec<Option<u16>>,
     /// Whether the node is part of the scene and visible; shape `[nodes]`.
     drawn: Vec<bool>,
-    /// Rest transform of each joint in world space.
-    world: Vec<Affine3A>,
+    /// Rest transform of each joint in world space, with scales of 0; places rigid meshes.
+    saved: Vec<Affine3A>,
 }
 
 impl Skeleton {
@@ -82,7 +82,7 @@ impl Skeleton {
             skins: Vec::new(),
             joint_of,
             drawn,
-            world: Vec::new(),
+            saved: Vec::new(),
         };
         notes.extend(skeleton.flattened());
         skeleton.bind(document, buffers, notes)?;
@@ -91,14 +91,14 @@ impl Skeleton {
 
     /// Returns a note about the joints that the file scales to 0, if there are any.
     fn flattened(&self) -> Option<String> {
-        let mut flat = self.joints.iter().filter(|joint| joint.rest.scale.abs().min_element() == 0.0);
+        let mut flat = self.joints.iter().filter(|joint| is_flat(&joint.rest));
         let first = flat.next()?;
         let more = match flat.count() {
             0 => String::new(),
             n => format!(" and {n} more"),
         };
         Some(format!(
-            "the joint {:?}{more} has a scale of 0, so that what it moves has no size; scale or delete it in the modeling program",
+            "the joint {:?}{more} has a scale of 0, so that what it moves has no size, and hair on it is held rigidly; scale or delete it in the modeling program",
             first.name
         ))
     }
@@ -116,7 +116,7 @@ impl Skeleton {
     /// Returns the rest transform and the joint of a node that holds a rigid mesh.
     pub(super) fn rigid(&self, node: usize) -> (Affine3A, u16) {
         let joint = self.joint_of[node].unwrap_or(0);
-        (self.world[joint as usize], joint)
+        (self.saved[joint as usize], joint)
     }
 }
 
@@ -144,6 +144,14 @@ fn needed(document: &Document, parents: &[Option<usize>], reached: &[bool]) -> R
         }
     }
     Ok(needed)
+}
+
+/// Smallest scale of a joint whose transform can be inverted in single precision [1].
+const SMALLEST_SCALE: f32 = 1e-6;
+
+/// Whether a joint has no size along one of its axes.
+fn is_flat(rest: &Trs) -> bool {
+    rest.scale.abs().min_element() < SMALLEST_SCALE
 }
 
 /// World transforms of all joints from their local transforms.

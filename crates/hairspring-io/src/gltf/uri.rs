@@ -39,17 +39,33 @@ pub(super) fn data(uri: &str, buffer: usize) -> Option<Result<Vec<u8>, Problem>>
     Some(BASE64.decode(&packed).map_err(|_| wrong("is not valid base64")))
 }
 
-/// Returns the name of the file that a relative URI refers to: `%20` is a space, and `./` is the same folder.
+/// Returns the name of the file that a relative URI refers to, in the folder of the glTF file or below: `%20` is a space, `./` is
+/// the same folder, and `../` the one above. Some programs write `\\` for `/`.
 pub(super) fn file_name(uri: &str) -> Result<String, Problem> {
-    if uri.contains("://") {
-        return Err(Problem::whole(format!(
-            "the buffer {uri:?} is on a network; put the file next to this one"
-        )));
+    let wrong = |why: &str| {
+        Err(Problem::whole(format!(
+            "the buffer {uri:?} {why}; put it next to the file and export with relative paths"
+        )))
+    };
+    let is_file = uri.get(..5).is_some_and(|start| start.eq_ignore_ascii_case("file:"));
+    if uri.contains("://") && !is_file {
+        return wrong("is on a network");
     }
     let name = String::from_utf8(percent_decoded(uri).into_owned()).unwrap_or_else(|_| uri.to_owned());
-    let parts: Vec<&str> = name.split('/').filter(|part| *part != "." && !part.is_empty()).collect();
-    // An absolute path stays one, which the caller refuses.
-    Ok(if name.starts_with('/') { name } else { parts.join("/") })
+    let name = name.replace('\\', "/");
+    let has_drive = name.as_bytes().get(1) == Some(&b':');
+    if is_file || has_drive || name.starts_with('/') {
+        return wrong("is an absolute path");
+    }
+    let mut parts: Vec<&str> = Vec::new();
+    for part in name.split('/').filter(|part| *part != "." && !part.is_empty()) {
+        if part != ".." {
+            parts.push(part);
+        } else if parts.pop().is_none() {
+            return wrong("is outside of the folder of the file");
+        }
+    }
+    Ok(parts.join("/"))
 }
 
 /// Returns the bytes of a text in which `%` and two digits are a byte.

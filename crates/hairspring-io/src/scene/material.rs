@@ -2,6 +2,7 @@
 
 use super::{
     check,
+    exact_arrays::Exact,
     file::{OneOrMore, SceneFile},
     groom_file::GroomFile,
     sentence::{line_at, line_of_key, problem_in_table, unknown},
@@ -110,7 +111,7 @@ pub(super) fn over<T: Serialize + DeserializeOwned>(
 ) -> Result<T, Problem> {
     let mut all = toml::Table::try_from(base).map_err(|e| Problem::whole(e.to_string()))?;
     all.extend(fields.clone());
-    all.clone().try_into().map_err(|e: toml::de::Error| {
+    T::deserialize(Exact(all.clone())).map_err(|e: toml::de::Error| {
         let path = wrong_field::<T>(&all, &fields).map(|field| format!("{table}.{field}"));
         problem_in_table(text, start, &e, path.as_deref())
     })

@@ -5,6 +5,7 @@ mod air;
 mod body;
 mod builtin;
 mod check;
+mod exact_arrays;
 mod expected;
 mod file;
 mod geometry;
@@ -27,11 +28,13 @@ use crate::{
     Error, Format, Loaded, Problem, ReadOptions, Result, load, load::read_mesh, text::as_text,
     units::WholeBody,
 };
+use exact_arrays::Exact;
 use file::{FileName, SceneFile};
 use glam::Affine3A;
 use hairspring::groom::Repairs;
 use hairspring_scene::{Scene, Shape};
 use sentence::{line_at, line_of_key, problem};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// Reads a scene file and all files that it names, relative to its own folder.
@@ -107,7 +110,8 @@ pub fn check_text(text: &str) -> std::result::Result<(), Problem> {
 }
 
 fn parse(text: &str) -> std::result::Result<SceneFile, Problem> {
-    let file: SceneFile = toml::from_str(text).map_err(|e| problem(text, &e))?;
+    let file = toml::Deserializer::parse(text).and_then(|from| SceneFile::deserialize(Exact(from)));
+    let file = file.map_err(|e| problem(text, &e))?;
     check::ranges(text, &file)?;
     if let Some(named) = &file.builtin {
         builtin::settings(text, &file, named)?;
@@ -144,7 +148,7 @@ impl<'a> Reader<'a> {
     fn named<T>(&self, result: Result<T>, name: &FileName, what: &str) -> Result<T> {
         let line = line_at(self.text, name.span().start);
         result.map_err(|error| match error {
-            Error::NotFound { path, .. } => {
+            Error::NotFound { path, why } if why.is_empty() => {
                 let why = format!("; {}, line {line}, names it as the {what}", self.path.display());
                 Error::NotFound { path, why }
             }

@@ -65,10 +65,36 @@ fn a_matrix_without_size_and_a_rotation_of_zero_are_named() {
 }
 
 #[test]
-fn a_body_that_is_scaled_to_nothing_is_noted() {
-    let mut file = GltfFile::tetrahedron();
-    file.json["nodes"][0]["scale"] = json!([1.0, 0.0, 1.0]);
-    assert_noted_once(&read(&file).1, &["the joint \"Head\" has a scale of 0"]);
+fn what_is_scaled_to_nothing_is_noted_and_carries_hair_rigidly() {
+    for (scale, skinned) in
+        [([1.0, 0.0, 1.0], false), ([0.0; 3], false), ([0.0; 3], true), ([1.0, 1.0, 0.0], true)]
+    {
+        let mut file = GltfFile::tetrahedron();
+        file.json["nodes"][0]["scale"] = json!(scale);
+        let mut texts = vec!["the joint \"Head\" has a scale of 0"];
+        if skinned {
+            file.json["nodes"][0].as_object_mut().unwrap().remove("mesh");
+            file.push("nodes", json!({"mesh": 0, "skin": 0}));
+            file.json["scenes"][0]["nodes"] = json!([0, 1]);
+            skin(&mut file, &[0], &[Affine3A::IDENTITY]);
+            let (j, w) = weights(&mut file, [[0; 4]; 4], [[1.0, 0.0, 0.0, 0.0]; 4]);
+            file.primitive()["attributes"]["JOINTS_0"] = json!(j);
+            file.primitive()["attributes"]["WEIGHTS_0"] = json!(w);
+            texts.push("saved in another pose");
+        }
+        let (character, notes) = read(&file);
+        assert_noted_once(&notes, &texts);
+        // The vertices are as saved, and the joint has a size.
+        let body = character.body;
+        let world = body.world(&body.rest_pose());
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        body.skinned(&world, &mut positions, &mut normals);
+        for (p, corner) in positions.iter().zip(TETRAHEDRON) {
+            let saved = Vec3::from(corner) * Vec3::from(scale);
+            assert!(p.distance(saved) < 1e-6, "{scale:?}: {p} instead of {saved}");
+        }
+        assert!(world[0].abs_diff_eq(Affine3A::IDENTITY, 1e-6), "{scale:?}: {:?}", world[0]);
+    }
 }
 
 #[test]

@@ -3,6 +3,7 @@
 #[path = "../common/scenes.rs"]
 mod scenes;
 
+mod arrays_have_the_length_of_their_field;
 mod book;
 mod book_is_complete;
 mod book_states_the_definitions;

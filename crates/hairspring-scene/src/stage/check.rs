@@ -4,8 +4,9 @@ use super::body_pose::anchor_joint;
 use crate::{Scene, SceneError, SceneGroom};
 use glam::{Affine3A, Vec3};
 use hairspring::{
-    body::{Body, Clip},
+    body::{Body, Clip, Trs},
     groom::{Groom, Imprecise, MAX_COORDINATE, first_imprecise, first_imprecise_moved},
+    math::RigidTransform,
     settings::{OutOfRange, Validate},
 };
 
@@ -114,6 +115,14 @@ pub enum StageError {
         /// Description of the item.
         what: String,
     },
+    /// The joint that carries the hair has no size along an axis, so that its rotation is unknown.
+    #[error("the joint '{joint}' carries the hair and has a scale of 0{when}: give it a scale above 0")]
+    FlatJoint {
+        /// Name of the joint.
+        joint: String,
+        /// The frame of the clip, or empty for the rest pose.
+        when: String,
+    },
     /// An item names a joint that does not exist.
     #[error("{what} follows the joint '{joint}', and the body has none of that name")]
     NoSuchJoint {
@@ -159,6 +168,27 @@ pub(super) fn check(scene: &Scene) -> Result<(), StageError> {
         });
     }
     check_vertex_cache(scene)
+}
+
+/// Checks that the joint that carries the hair has a rotation, at rest and in each frame of the clip. The roots must be bound
+/// to the body, and the scene checked otherwise.
+pub(super) fn check_anchor(scene: &Scene) -> Result<(), StageError> {
+    let Some(body) = &scene.body else { return Ok(()) };
+    let anchor = anchor_joint(body, &scene.grooms);
+    let is_flat = |pose: &[Trs]| {
+        let world = body.world(pose);
+        world.get(anchor).is_some_and(|joint| !RigidTransform::from_affine(joint).rotation.is_finite())
+    };
+    let flat = |when: String| StageError::FlatJoint { joint: body.joints[anchor].name.clone(), when };
+    if is_flat(&body.rest_pose()) {
+        return Err(flat(String::new()));
+    }
+    let Some(clip) = &scene.clip else { return Ok(()) };
+    let mut frames = clip.samples.chunks_exact(clip.joint_count.max(1));
+    match frames.position(is_flat) {
+        Some(frame) => Err(flat(format!(" in frame {frame} of the clip '{}'", clip.name))),
+        None => Ok(()),
+    }
 }
 
 /// Checks that the clip does not move a groom so far from the origin that the groom would be refused there. The

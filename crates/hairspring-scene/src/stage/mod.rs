@@ -37,7 +37,7 @@ pub use values::{Picked, StrandFigures, Value};
 
 use crate::{HairLook, Scene};
 use body::StagedBody;
-use check::{check, check_motion};
+use check::{check, check_anchor, check_motion};
 use clock::Clock;
 use glam::Vec3;
 use hair::StagedHair;
@@ -123,6 +123,7 @@ impl Stage {
         let joints = Joints::new(&scene, scene.body.as_ref())?;
         let cache = body_pose::take_vertex_cache(&mut scene);
         check_motion(&scene)?;
+        check_anchor(&scene)?;
         let body = StagedBody::new(&scene, &joints, cache);
         let grooms = std::mem::take(&mut scene.grooms);
         let mut hair: Vec<StagedHair> = Vec::with_capacity(grooms.len());

@@ -53,3 +53,17 @@ fn every_part_of_a_scene_is_checked() {
     let error = stage.update_settings(bad).unwrap_err();
     assert_eq!(error.to_string(), "solver: `inertia` must be 0 to 1");
 }
+
+#[test]
+fn a_joint_without_size_that_carries_the_hair_is_named() {
+    let good = scene(&BuiltinOptions { strands: 50, ..Default::default() });
+    let mut bad = good.clone();
+    bad.body.as_mut().unwrap().joints.iter_mut().for_each(|joint| joint.rest.scale.y = 0.0);
+    let error = Stage::new(bad).err().unwrap().to_string();
+    assert!(error.contains("carries the hair and has a scale of 0: give it a scale above 0"), "{error}");
+    let mut bad = good;
+    let clip = bad.clip.as_mut().unwrap();
+    clip.samples[3 * clip.joint_count..4 * clip.joint_count].iter_mut().for_each(|joint| joint.scale.y = 0.0);
+    let error = Stage::new(bad).err().unwrap().to_string();
+    assert!(error.contains("has a scale of 0 in frame 3 of the clip"), "{error}");
+}

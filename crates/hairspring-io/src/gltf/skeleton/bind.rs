@@ -1,6 +1,6 @@
 //! Places the skins of a glTF file, and gives the joints their rest pose.
 
-use super::{Skeleton, SkinPlace, world};
+use super::{Skeleton, SkinPlace, is_flat, world};
 use crate::{
     Problem,
     gltf::{
@@ -9,7 +9,7 @@ use crate::{
         json::{self, Document, Path},
     },
 };
-use glam::{Affine3A, Mat4};
+use glam::{Affine3A, Mat4, Vec3};
 use hairspring::body::Trs;
 use std::collections::{HashMap, HashSet};
 
@@ -26,6 +26,16 @@ impl SkinOf {
     fn root(&self) -> Option<(u16, Affine3A)> {
         let bound = self.joints.iter().zip(&self.binds).filter_map(|(j, bind)| Some((*j, (*bind)?)));
         bound.min_by_key(|(j, _)| *j)
+    }
+
+    /// Whether all its matrices are the same although joints are at different places in `world`: no pose has the mesh
+    /// undeformed.
+    fn has_no_bind_pose(&self, world: &[Affine3A]) -> bool {
+        let bound = || self.joints.iter().zip(&self.binds).filter_map(|(j, bind)| Some((*j, (*bind)?)));
+        let Some((first, bind)) = bound().next() else { return false };
+        let (first, place) = (world[usize::from(first)], |j: u16| world[usize::from(j)]);
+        bound().all(|(_, other)| other.abs_diff_eq(bind, 1e-6))
+            && bound().any(|(j, _)| !place(j).abs_diff_eq(first, 1e-4))
     }
 
     /// Whether joints with these transforms deform the meshes of the skin.
@@ -62,7 +72,13 @@ impl Skeleton {
             let is_moved = matches!(channel.target.path, Path::Translation | Path::Rotation | Path::Scale);
             is_moved && channel.target.node.is_some_and(|node| self.joint_of(node).is_some())
         });
-        let places = if !moves_joints && skins.iter().flatten().any(|skin| skin.is_posed(&node_world)) {
+        let unbound = skins.iter().position(|s| s.as_ref().is_some_and(|s| s.has_no_bind_pose(&node_world)));
+        let places = if let Some(skin) = unbound {
+            notes.push(format!(
+                "skin {skin} has no bind pose, because its inverse bind matrices are missing or all the same, so the body rests in the pose in which it is saved; export it with its bind pose if this is not intended"
+            ));
+            self.in_saved_pose(&skins, &node_world)?
+        } else if !moves_joints && skins.iter().flatten().any(|skin| skin.is_posed(&node_world)) {
             notes.push(
                 "the file has no motion and its joints are saved in another pose than the bind pose, so the body rests in the saved pose; export it in the bind pose, or with a motion, if this is not intended"
                     .into(),
@@ -73,6 +89,7 @@ impl Skeleton {
         };
         self.skins = places;
         let mut rest: Vec<Affine3A> = Vec::with_capacity(self.joints.len());
+        let mut saved: Vec<Affine3A> = Vec::with_capacity(self.joints.len());
         for (j, joint) in self.joints.iter_mut().enumerate() {
             let parent = joint.parent.map_or(Affine3A::IDENTITY, |p| rest[p as usize]);
             if let Some(bind) = bound[j] {
@@ -85,6 +102,12 @@ impl Skeleton {
                     joint.rest = trs;
                 }
             }
+            let above = joint.parent.map_or(Affine3A::IDENTITY, |p| saved[p as usize]);
+            saved.push(above * joint.rest.to_affine());
+            // The vertices stay without size, but hair and colliders move with the joint rigidly.
+            if is_flat(&joint.rest) {
+                joint.rest.scale = Vec3::ONE;
+            }
             rest.push(parent * joint.rest.to_affine());
         }
         self.inverse_bind = bound
@@ -92,7 +115,7 @@ impl Skeleton {
             .zip(&rest)
             .map(|(bind, rest)| bind.or(invertible(*rest).map(|r| r.inverse())).unwrap_or(Affine3A::IDENTITY))
             .collect();
-        self.world = rest;
+        self.saved = saved;
         Ok(())
     }
 
