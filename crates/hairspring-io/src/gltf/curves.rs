@@ -158,6 +158,8 @@ impl Build<'_> {
 
     /// Appends the lines of a primitive. `place` names it in error messages.
     fn lines(&mut self, primitive: &Primitive, world: Affine3A, place: &str) -> Result<(), Problem> {
+        // Copies of a mesh visit a primitive any number of times.
+        self.buffers.spend(1)?;
         let attributes = &primitive.attributes;
         let Some(position) = attributes.position else {
             self.found.positionless += 1;
@@ -228,7 +230,7 @@ impl Build<'_> {
         };
         if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
             return Err(Problem::whole(format!(
-                "{place}: a line names vertex {i} of {count}; export it again"
+                "{place}: a line names vertex {i} of an object of {count}; export it again"
             )));
         }
         if primitive.mode != Some(LINES) {

@@ -119,6 +119,9 @@ impl<'a> Build<'a> {
         primitive: &'a Primitive,
         shared: &mut HashMap<Vertices<'a>, (usize, usize)>,
     ) -> Result<(), Problem> {
+        // Copies of a mesh, and nodes that share one, visit a primitive any number of times.
+        self.buffers.spend(1)?;
+        self.check(self.mesh.parts.len())?;
         let Some(position) = primitive.attributes.position else {
             self.left_out.positionless += 1;
             return Ok(());

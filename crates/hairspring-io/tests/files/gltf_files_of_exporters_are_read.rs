@@ -5,7 +5,7 @@
 
 use crate::gltf_file::{GltfFile, TETRAHEDRON};
 use glam::{Affine3A, Quat, Vec3};
-use hairspring_io::{Character, Problem, ReadOptions, gltf, read_body, read_motion};
+use hairspring_io::{Character, ErrorKind, Problem, ReadOptions, gltf, read_body, read_motion};
 use serde_json::json;
 use std::{cell::RefCell, fs};
 
@@ -131,6 +131,8 @@ fn uris_are_percent_decoded_and_each_file_is_read_once() {
         ("./My%20Head.bin", "My Head.bin"),
         ("parts/./K%C3%B6pfe.bin", "parts/Köpfe.bin"),
         ("100%.bin", "100%.bin"),
+        ("parts/../head.bin", "head.bin"),
+        ("parts\\head.bin", "parts/head.bin"),
         ("not%20encoded.bin", "not%20encoded.bin"),
     ] {
         let length = file.bin.len();
@@ -145,15 +147,39 @@ fn uris_are_percent_decoded_and_each_file_is_read_once() {
         .unwrap_or_else(|e| panic!("{uri}: {e}"));
         assert_eq!((character.body.mesh.positions.len(), found.into_inner()), (4, 1), "{uri}");
     }
-    for uri in ["/etc/passwd", "../secret.bin", "a/%2e%2e/secret.bin", "%2Fetc%2Fpasswd", "c:\\a.bin"] {
-        let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("secret.bin"), &file.bin).unwrap();
-        let path = folder.path().join("inner/head.gltf");
-        fs::create_dir(path.parent().unwrap()).unwrap();
+}
+
+#[test]
+fn buffers_outside_of_the_folder_are_refused_and_missing_ones_are_not_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut file = GltfFile::tetrahedron();
+    fs::write(folder.path().join("secret.bin"), &file.bin).unwrap();
+    let path = folder.path().join("inner/head.gltf");
+    fs::create_dir_all(folder.path().join("inner/a")).unwrap();
+    let secret = format!("file://{}/secret.bin", folder.path().display());
+    for (uri, wanted) in [
+        ("/etc/passwd", "is an absolute path"),
+        ("%2Fetc%2Fpasswd", "is an absolute path"),
+        ("c:\\a.bin", "is an absolute path"),
+        (&secret, "is an absolute path"),
+        ("../secret.bin", "is outside of the folder"),
+        ("..\\secret.bin", "is outside of the folder"),
+        ("a/%2e%2e/../secret.bin", "is outside of the folder"),
+        ("https://example.com/a.bin", "is on a network"),
+        ("a", "its buffer \"a\" was not found next to it, or is no file"),
+        ("parts/../lost.bin", "lost.bin was not found; "),
+    ] {
         file.json["buffers"] = json!([{"uri": uri, "byteLength": file.bin.len()}]);
         fs::write(&path, file.json.to_string()).unwrap();
-        let error = read_body(&path, &ReadOptions::default()).unwrap_err().to_string();
-        assert!(error.contains("was not found next to it"), "{uri}: {error}");
+        let error = read_body(&path, &ReadOptions::default()).unwrap_err();
+        assert!(error.to_string().contains(wanted), "{uri}: {error}");
+        let is_missing = uri.ends_with("lost.bin");
+        assert_eq!(error.kind() == ErrorKind::NotFound, is_missing, "{uri}: {error}");
+        if is_missing {
+            let lost = path.with_file_name("lost.bin");
+            let text = format!("{} was not found; {} names it as a buffer", lost.display(), path.display());
+            assert_eq!(error.to_string(), text);
+        }
     }
 }
 
@@ -261,6 +287,23 @@ fn animation_channels_without_a_joint_are_left_out_and_noted_once() {
     assert_eq!((clips.len(), clips[0].frame_count()), (2, 31));
     let last = clips[0].sample(0.5)[0].rotation;
     assert!(last.abs_diff_eq(Quat::from_rotation_y(std::f32::consts::FRAC_PI_2), 1e-6), "{last}");
+}
+
+#[test]
+fn pointers_to_nodes_are_channels() {
+    let mut file = GltfFile::tetrahedron();
+    animate(&mut file);
+    let plain = read(&file).0.clips;
+    let target = |pointer: &str| json!({"path": "pointer", "extensions": {"KHR_animation_pointer": {"pointer": pointer}}});
+    file.json["animations"][0]["channels"][0]["target"] = target("/nodes/0/rotation");
+    let (character, notes) = read(&file);
+    assert_eq!((character.clips, notes.len()), (plain, 0), "{notes:?}");
+    for pointer in ["/nodes/0/name", "/nodes/x/rotation", "/cameras/0/perspective/yfov", ""] {
+        file.json["animations"][0]["channels"][0]["target"] = target(pointer);
+        assert_noted_once(&read_tetrahedron(&file), &["1 animation channel is left out"]);
+    }
+    file.json["animations"][0]["channels"][0]["target"] = target("/nodes/9/rotation");
+    assert!(refused(&file).text.contains("refers to node 9"), "{}", refused(&file));
 }
 
 #[test]
@@ -492,6 +535,35 @@ fn a_vrm_is_a_gltf() {
     file.json["extensionsUsed"] = json!(["VRM", "KHR_materials_unlit"]);
     fs::write(&path, file.glb()).unwrap();
     assert_eq!(read_body(&path, &ReadOptions::default()).unwrap().value.body.mesh.triangles.len(), 4);
+}
+
+#[test]
+fn an_avatar_that_looks_along_minus_z_is_turned() {
+    let mut file = GltfFile::tetrahedron();
+    animate(&mut file);
+    file.json["nodes"][0]["translation"] = json!([0.2, 1.0, 0.3]);
+    let posed = |file: &GltfFile, time: f64| {
+        let (character, notes) = read(file);
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        let body = &character.body;
+        body.skinned(&body.world(&character.clips[0].sample(time)), &mut positions, &mut normals);
+        (body.mesh.positions.clone(), positions, notes)
+    };
+    let turned =
+        |positions: Vec<Vec3>| positions.iter().map(|p| Vec3::new(-p.x, p.y, -p.z)).collect::<Vec<_>>();
+    let known: Vec<_> = [0.0, 0.3].map(|time| posed(&file, time)).into();
+    file.json["extensions"] = json!({"VRMC_vrm": {"specVersion": "1.0"}});
+    assert_eq!(posed(&file, 0.3), known[1]);
+    file.json["extensions"] = json!({"VRM": {"specVersion": "0.0"}});
+    for (time, (rest, moved, _)) in [0.0, 0.3].into_iter().zip(known) {
+        let (of_rest, of_moved, notes) = posed(&file, time);
+        assert_noted_once(&notes, &["the file is a VRM 0.x avatar, which looks along -Z"]);
+        assert!(hairspring_test::farthest(&of_rest, &turned(rest)) < 1e-6);
+        assert!(hairspring_test::farthest(&of_moved, &turned(moved)) < 1e-6, "at {time} s");
+    }
+    file.primitive()["mode"] = json!(3);
+    let strand = gltf::parse_groom(&file.glb(), &|_| None).unwrap().points;
+    assert!(strand[1].distance(Vec3::new(-0.3, 1.0, -0.3)) < 1e-6, "{}", strand[1]);
 }
 
 #[test]

@@ -131,3 +131,58 @@ fn weights_that_are_no_weights_count_as_0_and_are_noted() {
     );
     assert_eq!(read(&file).0.body.skin.unwrap().weights, [one; 4]);
 }
+
+#[test]
+fn weights_that_do_not_sum_to_1_are_noted_unless_they_are_rounded() {
+    let noted = |weight: f32| {
+        let mut file = GltfFile::tetrahedron();
+        skin(&mut file, &[0], &[Affine3A::IDENTITY]);
+        file.json["nodes"][0]["skin"] = json!(0);
+        let (j, w) = weights(&mut file, [[0; 4]; 4], [[weight, 0.0, 0.0, 0.0]; 4]);
+        file.primitive()["attributes"]["JOINTS_0"] = json!(j);
+        file.primitive()["attributes"]["WEIGHTS_0"] = json!(w);
+        let notes = read_tetrahedron(&file);
+        if !notes.is_empty() {
+            assert_noted_once(&notes, &["4 vertices of skinned meshes have weights that do not sum to 1"]);
+        }
+        !notes.is_empty()
+    };
+    assert_eq!([2.0, 0.5, 1.0, 0.98, 1.02].map(noted), [true, true, false, false, false]);
+}
+
+#[test]
+fn a_primitive_without_positions_is_noted() {
+    let mut file = GltfFile::tetrahedron();
+    let primitives = file.json["meshes"][0]["primitives"].as_array_mut().unwrap();
+    primitives.push(json!({"attributes": {"NORMAL": 0}}));
+    assert_noted_once(&read_tetrahedron(&file), &["1 primitives have no positions (POSITION)"]);
+}
+
+#[test]
+fn errors_of_a_mesh_name_it_and_its_primitive() {
+    let start = |file: &GltfFile, wanted: &str| {
+        let text = refused(file).text;
+        assert!(text.starts_with(&format!("mesh \"tetra\", primitive 0: {wanted}")), "{text}");
+    };
+    let mut file = GltfFile::tetrahedron();
+    file.bin[16..20].copy_from_slice(&f32::NAN.to_le_bytes());
+    start(&file, "the position of vertex 1 is not finite");
+    let mut file = GltfFile::tetrahedron();
+    let indices = file.bytes(5121, "SCALAR", 3, &[0, 1, 9]);
+    file.primitive()["indices"] = json!(indices);
+    start(&file, "a triangle names vertex 9 of 4");
+    let mut file = GltfFile::tetrahedron();
+    let normals = file.floats("VEC3", &[0.0; 6]);
+    file.primitive()["attributes"]["NORMAL"] = json!(normals);
+    start(&file, "it has 4 positions but 2 normals");
+    let mut file = GltfFile::tetrahedron();
+    file.primitive()["material"] = json!(7);
+    start(&file, "it names material 7");
+    let mut file = GltfFile::tetrahedron();
+    skin(&mut file, &[0], &[Affine3A::IDENTITY]);
+    file.json["nodes"][0]["skin"] = json!(0);
+    let (j, w) = weights(&mut file, [[0; 4], [77, 0, 0, 0], [0; 4], [0; 4]], [[1.0, 0.0, 0.0, 0.0]; 4]);
+    file.primitive()["attributes"]["JOINTS_0"] = json!(j);
+    file.primitive()["attributes"]["WEIGHTS_0"] = json!(w);
+    start(&file, "vertex 1 names joint 77 of a skin of 1");
+}

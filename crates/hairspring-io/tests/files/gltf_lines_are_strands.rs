@@ -119,15 +119,16 @@ fn skipped_data_is_noted() {
     });
     let mut file = file;
     file.json["nodes"][0]["extensions"] = json!({"EXT_mesh_gpu_instancing": {}});
+    file.json["nodes"][0]["skin"] = json!(0);
     let (groom, notes) = read("a.glb", &file.glb());
     assert_eq!(groom.strand_count(), 2);
     assert!(groom.colors.is_empty());
     for text in [
         "1 primitives of triangles or points",
-        "1 primitives of lines have a skin",
+        "2 primitives of lines have a skin",
         "no COLOR_0",
         "no _RADIUS",
-        "1 nodes draw copies",
+        "1 nodes draw copies of a mesh with a skin",
     ] {
         assert_eq!(notes.iter().filter(|note| note.contains(text)).count(), 1, "{text}: {notes:?}");
     }

@@ -144,3 +144,62 @@ fn a_wrong_number_of_values_names_the_animation_and_the_right_one() {
         assert!(text.starts_with(wanted), "{text}");
     }
 }
+
+/// A tetrahedron with a motion "slide" of its node `Head` along X.
+fn sliding(times: &[f32], x: &[f32], interpolation: &str) -> GltfFile {
+    let mut file = GltfFile::tetrahedron();
+    let values: Vec<f32> = x.iter().flat_map(|x| [*x, 0.0, 0.0]).collect();
+    let (input, output) = (file.floats("SCALAR", times), file.floats("VEC3", &values));
+    let animation = json!({
+        "name": "slide",
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+        "samplers": [{"input": input, "output": output, "interpolation": interpolation}],
+    });
+    file.push("animations", animation);
+    file
+}
+
+#[test]
+fn keys_that_are_rounded_to_milliseconds_are_exact() {
+    for fps in [12.0, 15.0, 24.0, 25.0, 30.0, 48.0, 60.0f64] {
+        for (interpolation, first) in [("STEP", 0), ("LINEAR", 0), ("LINEAR", 1)] {
+            let keys: Vec<i32> = (first..first + 25).collect();
+            let times: Vec<f32> =
+                keys.iter().map(|k| ((1e3 * f64::from(*k) / fps).round() / 1e3) as f32).collect();
+            let x: Vec<f32> = keys.iter().map(|k| if k % 2 == 0 { 0.1 * *k as f32 } else { -0.1 }).collect();
+            let (character, notes) =
+                gltf::parse(&sliding(&times, &x, interpolation).glb(), &|_| None).unwrap();
+            assert!(notes.is_empty(), "{notes:?}");
+            let clip = &character.clips[0];
+            for (k, x) in keys.iter().zip(&x) {
+                let at = clip.sample(f64::from(*k) / fps)[0].translation.x;
+                assert!((at - x).abs() < 1e-4, "{interpolation} at {fps} fps, key {k}: {at}, not {x}");
+            }
+            assert!(clip.rate <= 120.0, "{fps} fps are sampled at {} Hz", clip.rate);
+        }
+    }
+}
+
+#[test]
+fn keys_at_one_time_and_before_0_s_are_noted() {
+    let (x, read) = ([0.0, 1.0, 2.0], |file: &GltfFile| gltf::parse(&file.glb(), &|_| None).unwrap());
+    let (character, notes) = read(&sliding(&[0.0, 1.0, 1.0], &x, "LINEAR"));
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(notes[0].starts_with("1 keys of animations are at the time of the key before"), "{notes:?}");
+    assert_eq!(character.clips[0].samples.last().unwrap().translation.x, 2.0);
+    let (character, notes) = read(&sliding(&[-0.5, 0.0, 1.0], &x, "LINEAR"));
+    assert_eq!(notes.len(), 1, "{notes:?}");
+    assert!(notes[0].contains("first key at -0.50 s and begins there"), "{notes:?}");
+    assert!((character.clips[0].duration() - 1.5).abs() < 1e-6);
+}
+
+#[test]
+fn a_joint_that_is_mirrored_is_noted() {
+    let mirrored = |values| {
+        let (_, notes) = gltf::parse(&moving("scale", 1.0, values).glb(), &|_| None).unwrap();
+        notes.iter().filter(|note| note.contains("mirrors the joint \"Head\" at 0.")).count()
+    };
+    assert_eq!(mirrored([[1.0; 3], [-1.0; 3]]), 1);
+    assert_eq!(mirrored([[1.0; 3], [1.0, -1.0, -1.0]]), 0, "it is turned");
+    assert_eq!(mirrored([[-1.0, 1.0, 1.0]; 2]), 0, "it is so from the begin");
+}

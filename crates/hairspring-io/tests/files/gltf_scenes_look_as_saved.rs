@@ -73,13 +73,52 @@ fn a_skin_without_bind_matrices_does_not_collapse() {
 }
 
 #[test]
-fn a_motion_moves_the_joints_from_the_bind_pose() {
-    let turn = Quat::from_rotation_x(1.2);
-    let mut file = face(turn);
+fn a_skin_without_a_bind_pose_moves_from_the_saved_pose() {
+    let turn = Quat::from_rotation_x(0.5);
+    for binds in [None, Some([Affine3A::IDENTITY; 2])] {
+        let mut file = face(turn);
+        file.json["skins"] = json!([]);
+        match binds {
+            Some(binds) => _ = skin(&mut file, &[0, 1], &binds),
+            None => _ = file.push("skins", json!({"joints": [0, 1]})),
+        }
+        follow(&mut file, [0, 0, 1, 1]);
+        animate_hips(&mut file);
+        let (character, notes) = read(&file);
+        assert_noted_once(
+            &notes,
+            &["skin 0 has no bind pose, because its inverse bind matrices are missing"],
+        );
+        let body = character.body;
+        let saved: Vec<Vec3> = (0..4)
+            .map(|v| {
+                let corner = Vec3::from(TETRAHEDRON[v]);
+                if v < 2 { corner + Vec3::Y } else { turn * corner + Vec3::Y * 1.5 }
+            })
+            .collect();
+        assert!(hairspring_test::farthest(&body.mesh.positions, &saved) < 1e-6, "{:?}", body.mesh.positions);
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        for time in [0.0, 1.0] {
+            body.skinned(&body.world(&character.clips[0].sample(time)), &mut positions, &mut normals);
+            let moved: Vec<Vec3> = saved.iter().map(|p| *p + Vec3::Y * time as f32).collect();
+            assert!(hairspring_test::farthest(&positions, &moved) < 1e-5, "at {time} s: {positions:?}");
+        }
+    }
+}
+
+/// Adds a motion that lifts the hips from 1 m to 2 m.
+fn animate_hips(file: &mut GltfFile) {
     let (times, values) =
         (file.floats("SCALAR", &[0.0, 1.0]), file.floats("VEC3", &[0.0, 1.0, 0.0, 0.0, 2.0, 0.0]));
     let channel = json!({"sampler": 0, "target": {"node": 0, "path": "translation"}});
     file.push("animations", json!({"samplers": [{"input": times, "output": values}], "channels": [channel]}));
+}
+
+#[test]
+fn a_motion_moves_the_joints_from_the_bind_pose() {
+    let turn = Quat::from_rotation_x(1.2);
+    let mut file = face(turn);
+    animate_hips(&mut file);
     let (character, notes) = read(&file);
     assert!(notes.is_empty(), "{notes:?}");
     let body = character.body;

@@ -7,6 +7,7 @@ mod samples;
 
 mod bad_files_are_refused;
 mod example_meshes_are_made_by_code;
+mod gltf_copies_are_where_they_are_drawn;
 mod gltf_files_of_exporters_are_read;
 mod gltf_files_that_break_the_rules_are_reported;
 mod gltf_lines_are_strands;
