@@ -72,36 +72,21 @@ fn read(data: &[u8], rate: Option<f64>) -> Result<Read, Problem> {
         ));
     }
     let width: usize = channels.iter().map(Vec::len).sum();
+    let left = words.words_left();
+    // The skeleton of a file without channels stands still for as long as its size allows.
+    let held = left.checked_div(width).unwrap_or(named.min(text.len()));
     // The lines are counted if the header names no frames.
-    let frames = if named == 0 { words.numbers_left().checked_div(width).unwrap_or(0) } else { named };
+    let frames = if named == 0 { held } else { named.min(held) };
     if frames == 0 {
         return Err(Problem::line(line, "the file holds no frames; export the motion again"));
     }
-    if named == 0 {
-        notes.push(format!("the header names 0 frames; {frames} were counted in the file and are used; correct `Frames:` in the file"));
-    }
-    // A number and a space take at least two bytes. A file without channels has one still frame.
-    if frames.saturating_mul(width.max(1)) > text.len() / 2 + 1 {
-        let text =
-            format!("{frames} frames of {width} numbers do not fit into a file of {} bytes", text.len());
-        return Err(Problem::line(line, text));
-    }
+    notes.extend(miscounted(named, held, left - held * width));
     check_samples(frames, joints.len(), Place::Line(line))?;
     let mut samples = Vec::with_capacity(frames * joints.len());
     for frame in 0..frames {
         for (joint, channels) in joints.iter().zip(&channels) {
             samples.push(local(joint, channels, || words.finite(&format!("a number of frame {frame}")))?);
         }
-    }
-    let left = if named == 0 { 0 } else { words.numbers_left() };
-    if left > 0 {
-        let there = match left.checked_div(width) {
-            Some(more) if more > 0 => format!("the file holds {} frames", frames + more),
-            _ => format!("{left} numbers follow the last frame"),
-        };
-        notes.push(format!(
-            "{there}, but its header names {named}; only these are used; correct `Frames:` in the file to use the rest"
-        ));
     }
     // Frame times are rounded to about six digits and stand for a standard rate.
     let hertz = rate.unwrap_or(1.0 / frame_time);
@@ -114,6 +99,31 @@ fn read(data: &[u8], rate: Option<f64>) -> Result<Read, Problem> {
     }
     let clip = Clip { name: String::new(), rate: rate_used, joint_count: joints.len(), samples };
     Ok(Read { motion: Motion { joints, clip }, ends, notes })
+}
+
+/// Describes a header that names another number of frames than the file holds, and what follows the last frame.
+fn miscounted(named: usize, held: usize, rest: usize) -> Option<String> {
+    let cut = match rest {
+        0 => String::new(),
+        _ => format!(" and {rest} numbers of another one, which are not used"),
+    };
+    if named == 0 {
+        Some(format!(
+            "the header names 0 frames; {held} were counted in the file{cut} and are used; correct `Frames:` in the file"
+        ))
+    } else if named > held {
+        Some(format!(
+            "the header names {named} frames, but the file holds {held}{cut}; these are used; if the file is cut short, export the motion again, otherwise correct `Frames:` in the file"
+        ))
+    } else if named < held {
+        Some(format!(
+            "the file holds {held} frames, but its header names {named}; only these are used; correct `Frames:` in the file to use the rest"
+        ))
+    } else {
+        (rest > 0).then(|| {
+            format!("{rest} words follow the last frame and are not used; remove them from the file")
+        })
+    }
 }
 
 /// Returns a text with its lines of comments (`#`) empty.
@@ -163,16 +173,19 @@ const UNITS: [(f32, &str); 6] = [
     (0.001, "millimeters"),
 ];
 
-/// Height of a person's skeleton [m]. It ends about 10 cm below the crown, and at the ankle or the toe.
-const PERSON: std::ops::RangeInclusive<f32> = 1.35..=1.95;
-/// Height that is assumed if no known unit gives the height of a person [m].
+/// Height of a person's skeleton, from a small child to a tall adult [m]. It ends at the crown or 10 cm below it, and at
+/// the ankle or the toe.
+const PERSON: std::ops::RangeInclusive<f32> = 0.7..=2.4;
+/// Usual height of a person's skeleton [m], which the guess comes nearest to.
 const TYPICAL: f32 = 1.6;
 
 /// Fewest joints of a person's skeleton: hips, spine, neck, head, and two of each leg. Less is a part of one, such as a
-/// head.
+/// head, unless it has a leg.
 const PERSON_JOINTS: usize = 8;
+/// Parts of the names of joints of legs, in lower case.
+const LEG: [&str; 8] = ["leg", "foot", "knee", "ankle", "thigh", "shin", "calf", "toe"];
 /// Height of a part of a person, such as a neck with a head or a bust [m].
-const PART: std::ops::RangeInclusive<f32> = 0.05..=1.95;
+const PART: std::ops::RangeInclusive<f32> = 0.05..=2.4;
 
 /// Reads a `.bvh` file and converts it to meters and Y up. The unit and the up axis are guessed from the height of the
 /// person, or the part of one, in the frames; the notes say what was guessed. `rate` replaces the file's frame rate
@@ -190,9 +203,12 @@ pub(crate) fn read_in_meters(
     }
     let height = if up == Axis::Z { size.z } else { size.y };
     let scale = options.scale.unwrap_or_else(|| {
-        let whole = motion.joints.len() >= PERSON_JOINTS;
+        let whole = is_person(&motion.joints);
         let (plausible, what) = if whole { (PERSON, "person is then") } else { (PART, "skeleton is then") };
-        let unit = UNITS.iter().find(|(meters, _)| plausible.contains(&(height * meters)));
+        let mut units = UNITS.iter().filter(|(meters, _)| plausible.contains(&(height * meters)));
+        let off = |meters: f32| (height * meters / TYPICAL).ln().abs();
+        // A part of a person has no usual height.
+        let unit = if whole { units.min_by(|a, b| off(a.0).total_cmp(&off(b.0))) } else { units.next() };
         let (scale, name) = match unit {
             Some((meters, name)) => (*meters, (*name).to_owned()),
             None if whole && height > 0.0 => {
@@ -209,6 +225,12 @@ pub(crate) fn read_in_meters(
     let turn = turn_of(up);
     apply_to_motion(&mut motion.joints, std::slice::from_mut(&mut motion.clip), scale, turn);
     Ok((motion, scale, notes))
+}
+
+/// Whether the joints are those of a person, or of a part of one.
+fn is_person(joints: &[Joint]) -> bool {
+    let is_leg = |joint: &Joint| LEG.iter().any(|leg| joint.name.to_ascii_lowercase().contains(leg));
+    joints.len() >= PERSON_JOINTS || joints.iter().any(is_leg)
 }
 
 /// Size of the box around the joints and ends along each axis, as the median over some frames [file units].

@@ -17,7 +17,7 @@ use crate::{
     Place, Problem,
     strand_attributes::{GROUP, NUMBERS, StrandAttributes},
     strands::Read,
-    text::{as_text, decimal_comma, name},
+    text::{as_text, name, remedy},
     units::FileUnits,
 };
 use glam::Vec3;
@@ -53,9 +53,9 @@ struct Columns {
 
 pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let mut text = as_text(data);
-    // The line ends of old spreadsheets.
-    if !text.contains('\n') {
-        text = text.replace('\r', "\n").into();
+    // The library counts lines that end in LF only.
+    if text.contains('\r') {
+        text = text.replace("\r\n", "\n").replace('\r', "\n").into();
     }
     let header = text.lines().find(|line| !line.trim().is_empty());
     let header = header.ok_or_else(|| Problem::whole("the table is empty"))?;
@@ -63,6 +63,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let mut table = ::csv::ReaderBuilder::new();
     table.delimiter(separator).has_headers(false).flexible(true);
     let mut rows = table.from_reader(text.as_bytes()).into_records();
+    let mut line = LineOfRow { text: text.as_bytes(), at: 0, line: 1 };
     let mut notes = Vec::new();
     let first = rows.next().ok_or_else(|| Problem::whole("the table is empty"))?;
     let columns = columns(&cells(&first.map_err(|error| Problem::whole(error.to_string()))?), &mut notes)?;
@@ -71,7 +72,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let (mut begun, mut open_rows) = (HashSet::new(), 0usize);
     for row in rows {
         let row = row.map_err(|error| Problem::whole(error.to_string()))?;
-        let number = row.position().map_or(0, |place| place.line() as usize);
+        let number = line.of(&row);
         let wrong = |text: String| Problem::new(Place::Line(number), text);
         let mut cells = cells(&row);
         if cells == [""] {
@@ -92,7 +93,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         let cell = |k: usize| {
             let number = cells[k].parse::<f32>().ok();
             number.ok_or_else(|| {
-                let hint = decimal_comma(cells[k]);
+                let hint = remedy(cells[k]);
                 wrong(format!("expected a number in column {}, but found {:?}{hint}", k + 1, cells[k]))
             })
         };
@@ -150,6 +151,26 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let mut read = Read { groom, radii, true_radii: false, units: FileUnits::default(), notes };
     attributes.apply(&mut read)?;
     Ok(read)
+}
+
+/// The line where a row begins, counted from 1. The library takes empty lines before a row for part of it.
+struct LineOfRow<'a> {
+    text: &'a [u8],
+    /// Begin of the last row [bytes], and its line.
+    at: usize,
+    line: usize,
+}
+
+impl LineOfRow<'_> {
+    /// Returns the line of the next row.
+    fn of(&mut self, row: &::csv::StringRecord) -> usize {
+        let start = row.position().map_or(self.at, |place| place.byte() as usize);
+        let is_empty = |byte: &&u8| **byte == b'\n';
+        let start = start + self.text[start..].iter().take_while(is_empty).count();
+        self.line += self.text[self.at..start].iter().filter(is_empty).count();
+        self.at = start;
+        self.line
+    }
 }
 
 /// The cells of a row, without spaces around them, and without quotation marks that follow a space.

@@ -10,6 +10,7 @@ mod bytes;
 mod chains;
 mod clip_choice;
 mod color;
+mod contents;
 mod error;
 mod external;
 mod frame_writer;
@@ -31,6 +32,7 @@ mod strays;
 mod text;
 mod tfx_text;
 mod units;
+mod unused_vertices;
 
 pub mod bvh;
 pub mod csv;

@@ -4,14 +4,14 @@ use crate::{
     Character, Error, Motion, Problem, ReadOptions, Result, bvh,
     bytes::read_regular,
     clip_choice::{first_note, pick_clip},
-    csv, external, gltf, hair, obj, ply,
-    repair_notes::repair_notes,
+    contents, csv, external, gltf, hair, obj, ply,
+    repair_notes::{Lost, repair_notes, strands_without_points},
     strands::Read,
+    strays::give_up_far_strands,
     text, tfx, tfxbone, tfxmesh,
-    units::{FileUnits, FitUnit, WholeBody, apply_to_body, settle},
-    usc,
+    units::{FileUnits, FitUnit, UnitHint, apply_to_body, settle},
+    unused_vertices, usc,
 };
-use glam::Affine3A;
 use hairspring::{
     body::Body,
     groom::{Groom, Repairs, first_imprecise, sanitize},
@@ -180,16 +180,21 @@ pub(crate) fn read_groom_on(
         0 => (read.groom, 1.0, Vec::new()),
         _ => read.finish(options, fit),
     };
+    let lost = Lost { far: give_up_far_strands(&mut groom), pointless: strands_without_points(&groom) };
     check_groom(path, &groom)?;
     let repairs = sanitize(&mut groom);
-    let notes = notes.into_iter().chain(repair_notes(&groom, &repairs)).collect();
+    let notes = notes.into_iter().chain(repair_notes(&groom, &repairs, &lost)).collect();
     Ok(Loaded { value: groom, format, scale, repairs, notes: plain(notes) })
 }
 
-/// Checks that a groom has strands, near enough to the origin.
+/// Checks that a groom has strands with points, near enough to the origin.
 fn check_groom(path: &Path, groom: &Groom) -> Result<()> {
     if groom.strand_count() == 0 {
         return Err(Problem::whole("the file holds no strands").in_file(path));
+    }
+    if !groom.points.iter().any(|p| p.is_finite()) {
+        let text = "no strand has a finite point; export the hair again";
+        return Err(Problem::whole(text).in_file(path));
     }
     match first_imprecise(groom) {
         Some(far) => Err(Problem::whole(far.to_string()).in_file(path)),
@@ -203,17 +208,12 @@ fn check_groom(path: &Path, groom: &Groom) -> Result<()> {
 /// Returns an error if the file is missing, unreadable, of another kind or malformed, or if its mesh has no
 /// triangles.
 pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
-    read_mesh(path, options, None)
+    read_mesh(path, options, UnitHint::None)
 }
 
-/// Like [`read_body`]. If the file has no unit, that of the body `whole` which the mesh belongs to is used, if it fits
-/// where the mesh is placed.
-pub(crate) fn read_mesh(
-    path: &Path,
-    options: &ReadOptions,
-    whole: Option<(WholeBody, Affine3A)>,
-) -> Result<Loaded<Character>> {
-    let loaded = read_character(path, options, whole)?;
+/// Like [`read_body`]. `hint` helps to guess the unit of the file.
+pub(crate) fn read_mesh(path: &Path, options: &ReadOptions, hint: UnitHint<'_>) -> Result<Loaded<Character>> {
+    let loaded = read_character(path, options, hint)?;
     if loaded.value.body.mesh.triangles.is_empty() {
         let text = match holds_only_curves(path) {
             // Lines that are wrong are so for a groom, too.
@@ -233,17 +233,13 @@ pub(crate) fn read_mesh(
 }
 
 /// Reads a body, which may have joints and motions but no mesh.
-fn read_character(
-    path: &Path,
-    options: &ReadOptions,
-    whole: Option<(WholeBody, Affine3A)>,
-) -> Result<Loaded<Character>> {
+fn read_character(path: &Path, options: &ReadOptions, hint: UnitHint<'_>) -> Result<Loaded<Character>> {
     let known = [&[Format::Gltf, Format::Obj, Format::TfxMesh], &Format::EXTERNAL[..]].concat();
     let format = format_of(path, &known, "a body")?;
     check_scale(path, options)?;
     if Format::EXTERNAL.contains(&format) {
         let (character, units, notes) = external::read_body(path, options)?;
-        return Ok(in_meters(character, format, &ReadOptions::default(), units, whole, notes));
+        return Ok(in_meters(character, format, &ReadOptions::default(), units, hint, notes));
     }
     let data = bytes_of(path)?;
     let mut units = FileUnits::default();
@@ -253,11 +249,14 @@ fn read_character(
             units.scale = Some(1.0);
             gltf::parse(&data, &|name| sibling(path, name))
         }
-        Format::Obj => obj::parse_with_notes(&data).map(|(mesh, notes)| (still(Body::rigid(mesh)), notes)),
+        Format::Obj => obj::parse_with_notes(&data).map(|(mut mesh, mut notes)| {
+            notes.extend(unused_vertices::keep_inside(&mut mesh));
+            (still(Body::rigid(mesh)), notes)
+        }),
         _ => tfxmesh::parse(&data).map(|body| (still(body), Vec::new())),
     }
     .map_err(|p| p.in_file(path))?;
-    Ok(in_meters(character, format, options, units, whole, notes))
+    Ok(in_meters(character, format, options, units, hint, notes))
 }
 
 /// Converts a body to meters and Y up.
@@ -266,10 +265,10 @@ fn in_meters(
     format: Format,
     options: &ReadOptions,
     units: FileUnits,
-    whole: Option<(WholeBody, Affine3A)>,
+    hint: UnitHint<'_>,
     mut notes: Vec<String>,
 ) -> Loaded<Character> {
-    let (scale, turn) = settle(options, units, &character.body.mesh.positions, whole, &mut notes);
+    let (scale, turn) = settle(options, units, &character.body.mesh, hint, &mut notes);
     apply_to_body(&mut character.body, &mut character.clips, scale, turn);
     character.morphs.convert(scale, turn);
     if let Some(cache) = &mut character.vertex_cache {
@@ -308,7 +307,8 @@ pub(crate) fn read_motion_at(
         make_printable(motion.joints.iter_mut().map(|joint| &mut joint.name).chain([&mut motion.clip.name]));
         return Ok(Loaded { value: motion, format, scale, repairs: Repairs::default(), notes: plain(notes) });
     }
-    let Loaded { value: mut character, scale, mut notes, .. } = read_character(path, options, None)?;
+    let Loaded { value: mut character, scale, mut notes, .. } =
+        read_character(path, options, UnitHint::None)?;
     let clip = pick_clip(&character.clips, name).map_err(|text| Problem::whole(text).in_file(path))?;
     notes.extend(first_note(&character.clips, name).map(|note| text::name(&note)));
     if character.morphs.moves(clip) {
@@ -361,8 +361,15 @@ fn check_scale(path: &Path, options: &ReadOptions) -> Result<()> {
     }
 }
 
-/// Reads all bytes of a regular file.
+/// Reads all bytes of a regular file. Its content must not be of another kind than its extension.
 pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
+    let data = any_bytes_of(path)?;
+    contents::check(path, &data).map_err(|p| p.in_file(path))?;
+    Ok(data)
+}
+
+/// Reads all bytes of a regular file.
+fn any_bytes_of(path: &Path) -> Result<Vec<u8>> {
     match read_regular(path, MAX_FILE) {
         Ok(Some(data)) => {
             crate::observe::report(path, &data);
@@ -383,7 +390,7 @@ pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
 fn sibling(path: &Path, name: &str) -> Option<Vec<u8>> {
     let inside = Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
     let beside = path.parent().unwrap_or(Path::new("")).join(name);
-    inside.then(|| bytes_of(&beside).ok()).flatten()
+    inside.then(|| any_bytes_of(&beside).ok()).flatten()
 }
 
 /// Escapes the characters of names that control a terminal.

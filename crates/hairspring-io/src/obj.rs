@@ -7,11 +7,11 @@
 
 use crate::{
     Place, Problem, color,
-    left_out::{LeftOut, UNMAPPED},
+    left_out::{CALLS, LeftOut, UNMAPPED},
     polygon::triangulate,
     polylines::Polylines,
     strands::Read,
-    text::{self, Lines, as_text, decimal_comma, finite, shortened},
+    text::{self, Lines, as_text, finite, remedy, shortened, without_comment},
     units::FileUnits,
 };
 use glam::{Vec2, Vec3};
@@ -51,7 +51,7 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
         match words.next() {
             Some("v") => {
                 mesh.positions.push(vertex(&mut words, line_number)?);
-                if let Some(color) = color(words) {
+                if let Some(color) = color(words, line_number)? {
                     left_out.uncolored += mesh.positions.len() - 1 - mesh.colors.len();
                     mesh.colors.resize(mesh.positions.len() - 1, Vec3::ZERO);
                     mesh.colors.push(color);
@@ -70,12 +70,15 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
                     }
                     face.push(v);
                 }
+                without_repeats(&mut face);
                 left_out.faces += usize::from(face.len() < 3);
                 if !triangulate(&mesh.positions, &face, &mut mesh.triangles) {
                     left_out.concave += 1;
                 }
             }
             Some("l") => left_out.lines += 1,
+            Some("p") => left_out.points += 1,
+            Some("call") => left_out.calls += 1,
             Some("curv" | "curv2" | "surf") => left_out.surfaces += 1,
             Some("g" | "o") => {
                 let name = words.collect::<Vec<_>>().join(" ");
@@ -102,6 +105,7 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
         left_out.uncolored += mesh.positions.len() - mesh.colors.len();
     }
     let mut notes = left_out.notes();
+    notes.extend(text::encoding_note(data));
     if !mesh.colors.is_empty() {
         mesh.colors.resize(mesh.positions.len(), Vec3::ZERO);
         notes.extend(color::into_range(&mut mesh.colors));
@@ -135,16 +139,19 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     let text = as_text(data);
     let (mut vertices, mut uvs): (Vec<Vec3>, Vec<Vec2>) = (Vec::new(), Vec::new());
     let mut lines = Polylines::default();
-    let (mut faces, mut points, mut colored, mut undefined) = (0usize, 0usize, 0usize, 0usize);
+    let (mut faces, mut points, mut colored, mut undefined, mut calls) =
+        (0usize, 0usize, 0usize, 0usize, 0usize);
     for (line_number, line) in statements(&text) {
         let mut words = line.split_whitespace();
         match words.next() {
             Some("v") => {
                 vertices.push(vertex(&mut words, line_number)?);
-                colored += usize::from(color(words).is_some());
+                colored += usize::from(color(words, line_number)?.is_some());
             }
             Some("vt") => uvs.push(texture_coordinate(&mut words, line_number)?),
-            Some("f") => faces += 1,
+            Some("f" | "fo") => faces += 1,
+            Some("p") => points += 1,
+            Some("call") => calls += 1,
             Some("l") => {
                 let counts = [vertices.len(), uvs.len()];
                 let mut rest = words.map(|word| corner_of(word, counts, line_number, &mut undefined));
@@ -175,7 +182,7 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
             "the file has no polylines (`l`), which are the strands of a groom; export the curves, not a mesh",
         ));
     }
-    let mut notes = Vec::new();
+    let mut notes: Vec<String> = text::encoding_note(data).into_iter().collect();
     notes.extend(lines.join());
     let closed = lines.closed();
     let root_uvs: Vec<_> =
@@ -198,7 +205,8 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
     let unmapped = if mapped > 0 { groom.strand_count() - mapped } else { 0 };
     for (count, text) in [
         (faces, "faces are left out, because a groom is read from polylines"),
-        (points, "polylines of one point are left out"),
+        (points, "points and polylines of one point are left out"),
+        (calls, CALLS),
         (closed, "closed polylines are opened at their first point, which is the root"),
         (undefined, UNMAPPED),
         (unmapped, "strands have no texture coordinates and get 0, 0; give each root one"),
@@ -231,7 +239,7 @@ impl<'a> Iterator for Statements<'a> {
         if keyword.starts_with('#') || matches!(keyword, "o" | "g" | "usemtl" | "mtllib") {
             return Some((i + 1, Cow::Borrowed(first)));
         }
-        let numbers = |line: &'a str| line.split('#').next().unwrap_or("").trim_end();
+        let numbers = |line: &'a str| without_comment(line).trim_end();
         let Some(start) = numbers(first).strip_suffix('\\') else {
             return Some((i + 1, Cow::Borrowed(numbers(first))));
         };
@@ -255,11 +263,27 @@ fn vertex<'a>(words: &mut impl Iterator<Item = &'a str>, line: usize) -> Result<
     Ok(Vec3::from(numbers(words, line, "a vertex")?))
 }
 
+/// Removes corners of a face that follow themselves, around the face. They span no area.
+fn without_repeats(face: &mut Vec<u32>) {
+    face.dedup();
+    while face.len() > 1 && face.first() == face.last() {
+        face.pop();
+    }
+}
+
 /// The color of a vertex, which some programs write after its position: three numbers. Other numbers there, such as a
 /// weight, are not used.
-fn color<'a>(words: impl Iterator<Item = &'a str>) -> Option<Vec3> {
-    let numbers: Vec<f32> = words.map_while(|word| word.parse().ok()).take(4).collect();
-    <[f32; 3]>::try_from(numbers).ok().map(Vec3::from)
+fn color<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<Option<Vec3>, Problem> {
+    let mut numbers = [0.0; 3];
+    let mut count = 0;
+    for word in words {
+        let number = word.parse().map_err(|_| expected("the color of a vertex", "numbers", word, line))?;
+        if let Some(slot) = numbers.get_mut(count) {
+            *slot = number;
+        }
+        count += 1;
+    }
+    Ok((count == 3).then(|| Vec3::from(numbers)))
 }
 
 /// Reads a texture coordinate of one number or more.
@@ -302,15 +326,18 @@ fn numbers<'a, const N: usize>(
     let mut out = [0.0; N];
     for x in &mut out {
         let word = words.next().unwrap_or("");
-        *x = finite(word).ok_or_else(|| {
-            let hint = decimal_comma(word);
-            Problem::line(
-                line,
-                format!("expected {what} of {}, found `{}`{hint}", plural(N), shortened(word)),
-            )
-        })?;
+        *x = finite(word).ok_or_else(|| expected(what, &plural(N), word, line))?;
     }
     Ok(out)
+}
+
+/// Says that `what` was expected, which consists of `numbers`, and what was found.
+fn expected(what: &str, numbers: &str, word: &str, line: usize) -> Problem {
+    let found = match word {
+        "" => "but the line ends".into(),
+        _ => format!("found `{}`{}", shortened(word), remedy(word)),
+    };
+    Problem::line(line, format!("expected {what} of {numbers}, {found}"))
 }
 
 /// `1 number`, `3 numbers`.

@@ -2,8 +2,21 @@
 
 use hairspring::groom::{Groom, Repairs, has_stray_point};
 
+/// Strands that are replaced because no point of them can be used. Each becomes a stub.
+pub(crate) struct Lost {
+    /// Those that lie far from all others.
+    pub far: Vec<usize>,
+    /// Number of those without points.
+    pub pointless: usize,
+}
+
+/// Counts the strands without points.
+pub(crate) fn strands_without_points(groom: &Groom) -> usize {
+    groom.offsets.windows(2).filter(|of| of[0] == of[1]).count()
+}
+
 /// Describes what was repaired, and what was found and kept.
-pub(crate) fn repair_notes(groom: &Groom, repairs: &Repairs) -> Vec<String> {
+pub(crate) fn repair_notes(groom: &Groom, repairs: &Repairs, lost: &Lost) -> Vec<String> {
     let parts = [
         (repairs.non_finite_points, "points that were not finite"),
         (repairs.zero_segments, "segments of zero length"),
@@ -16,10 +29,16 @@ pub(crate) fn repair_notes(groom: &Groom, repairs: &Repairs) -> Vec<String> {
     if !words.is_empty() {
         notes.push(format!("repaired {}", words.join(", ")));
     }
-    if repairs.empty_strands > 0 {
+    let infinite = repairs.empty_strands.saturating_sub(lost.far.len() + lost.pointless);
+    for (count, what) in [(lost.pointless, "have no points"), (infinite, "have no finite point")] {
+        if count > 0 {
+            notes.push(format!("{count} strands {what}; {STUBS}"));
+        }
+    }
+    if let Some(first) = lost.far.first() {
         notes.push(format!(
-            "{} strands have no finite point; each is now a stub of a millimeter at the root of another strand; remove them",
-            repairs.empty_strands
+            "{} strands, the first of them strand {first}, are far from all others, where single precision does not resolve them; {STUBS}",
+            lost.far.len()
         ));
     }
     if repairs.folds > 0 {
@@ -31,6 +50,9 @@ pub(crate) fn repair_notes(groom: &Groom, repairs: &Repairs) -> Vec<String> {
     notes.extend(strays(groom));
     notes
 }
+
+/// What becomes of strands without a usable point.
+const STUBS: &str = "each is now a stub of a millimeter at the root of another strand; remove them";
 
 /// Describes strands that have a stray point.
 fn strays(groom: &Groom) -> Option<String> {

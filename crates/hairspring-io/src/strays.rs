@@ -2,7 +2,7 @@
 
 use crate::units::{bounds, extent};
 use glam::Vec3;
-use hairspring::groom::Groom;
+use hairspring::groom::{DEFAULT_RADIUS, Groom, first_imprecise};
 
 /// Distance from the middle of a groom above which a point is a stray, over the median distance [1]. Points of a head of
 /// hair with a long tail reach a quarter of it.
@@ -45,6 +45,30 @@ impl Strays {
             (at_origin, n) => Some(format!(" ({} points far from the others do not count)", at_origin + n)),
         }
     }
+}
+
+/// Makes the points of strands far from all others NaN, so that they are repaired like strands without a finite point.
+/// Returns these strands.
+pub(crate) fn give_up_far_strands(groom: &mut Groom) -> Vec<usize> {
+    let far = far_strands(groom);
+    for s in &far {
+        let points = groom.range(*s);
+        groom.points[points].fill(Vec3::NAN);
+    }
+    far
+}
+
+/// Returns the strands far from all others, beyond the precision at their place, if they are few.
+fn far_strands(groom: &Groom) -> Vec<usize> {
+    let is_near = nearness(groom.points.iter().copied().filter(|p| p.is_finite()));
+    let is_far = |s: &usize| {
+        let strand = groom.strand(*s);
+        strand.iter().any(|p| p.is_finite())
+            && !strand.iter().any(|p| p.is_finite() && is_near(*p))
+            && first_imprecise(&Groom::from_strands([strand], DEFAULT_RADIUS)).is_some()
+    };
+    let far: Vec<usize> = (0..groom.strand_count()).filter(is_far).collect();
+    if far.len() * FEWEST > groom.strand_count() { Vec::new() } else { far }
 }
 
 /// Returns whether a point is near enough to the middle of `points` to belong to them. Distances are those of the

@@ -64,10 +64,10 @@ impl<'a> Words<'a> {
         self.words.by_ref().collect()
     }
 
-    /// Counts the finite numbers from here to the end, or to the first word that is none.
-    pub(crate) fn numbers_left(&self) -> usize {
+    /// Counts the words from here to the end.
+    pub(crate) fn words_left(&self) -> usize {
         let mut rest = self.clone();
-        std::iter::from_fn(|| rest.word().and_then(finite)).count()
+        std::iter::from_fn(|| rest.word()).count()
     }
 
     /// Reads the next word, which must be `wanted`, ignoring case.
@@ -100,7 +100,7 @@ impl<'a> Words<'a> {
     /// Says that `what` was expected, but `found` was read.
     pub(crate) fn missing(&self, what: &str, found: Option<&str>) -> Problem {
         let found = match found {
-            Some(word) => format!("found `{}`{}", shortened(word), decimal_comma(word)),
+            Some(word) => format!("found `{}`{}", shortened(word), remedy(word)),
             None => "the file ends".into(),
         };
         Problem::line(self.line, format!("expected {what}, {found}"))
@@ -112,10 +112,25 @@ pub(crate) fn finite(word: &str) -> Option<f32> {
     word.parse().ok().filter(|x: &f32| x.is_finite())
 }
 
-/// Returns what to do about a word that is no number, for the end of a message: if it has a decimal comma, to use points.
-pub(crate) fn decimal_comma(word: &str) -> &'static str {
-    let is_number = word.contains(',') && finite(&word.replacen(',', ".", 1)).is_some();
-    if is_number { "; use decimal points" } else { "" }
+/// Returns what to do about a word that is no number, for the end of a message, if its cause is known.
+pub(crate) fn remedy(word: &str) -> &'static str {
+    let is_number = |word: &str| finite(word).is_some();
+    // Programs that were built with old C libraries write numbers that are not finite as `-1.#IND` or `1.#QNAN0`.
+    let after = word.split_once('#').map(|(_, after)| after.to_ascii_uppercase());
+    if let Some(after) = after {
+        let not_finite = ["IND", "QNAN", "SNAN", "INF"].iter().any(|name| after.starts_with(name));
+        return match not_finite {
+            true => ", which is not finite; correct it in the program that made the file",
+            false => "; put a space before a comment",
+        };
+    }
+    if word.contains(',') && is_number(&word.replacen(',', ".", 1)) { "; use decimal points" } else { "" }
+}
+
+/// Returns a line without its comment, which begins with a number sign at the start or after a space.
+pub(crate) fn without_comment(line: &str) -> &str {
+    let begins = |(at, _): &(usize, &str)| line[..*at].chars().next_back().is_none_or(char::is_whitespace);
+    line.match_indices('#').find(begins).map_or(line, |(at, _)| &line[..at])
 }
 
 /// A word of the file for a message: its first 40 characters.
@@ -123,14 +138,34 @@ pub(crate) fn shortened(word: &str) -> String {
     if word.chars().count() <= 40 { word.into() } else { word.chars().take(40).chain(['…']).collect() }
 }
 
-/// A file's bytes as text: UTF-16 if the file begins with its byte order mark, otherwise UTF-8. Anything else
-/// (names in old encodings) becomes replacement characters.
+/// A file's bytes as text: UTF-16 if the file begins with its byte order mark, otherwise UTF-8. Each byte that is no
+/// UTF-8 (names in old encodings) is a character of Latin-1.
 pub(crate) fn as_text(data: &[u8]) -> Cow<'_, str> {
     match data {
         [0xff, 0xfe, rest @ ..] => Cow::Owned(utf16(rest, u16::from_le_bytes)),
         [0xfe, 0xff, rest @ ..] => Cow::Owned(utf16(rest, u16::from_be_bytes)),
-        _ => String::from_utf8_lossy(data.strip_prefix(b"\xef\xbb\xbf").unwrap_or(data)),
+        _ => utf8(data.strip_prefix(b"\xef\xbb\xbf").unwrap_or(data)),
     }
+}
+
+/// Decodes UTF-8, and other bytes as Latin-1.
+fn utf8(data: &[u8]) -> Cow<'_, str> {
+    if let Ok(text) = std::str::from_utf8(data) {
+        return Cow::Borrowed(text);
+    }
+    let mut text = String::with_capacity(data.len());
+    for chunk in data.utf8_chunks() {
+        text.push_str(chunk.valid());
+        text.extend(chunk.invalid().iter().map(|byte| char::from(*byte)));
+    }
+    Cow::Owned(text)
+}
+
+/// Describes names that are not in UTF-8, which `data` of a text file has.
+pub(crate) fn encoding_note(data: &[u8]) -> Option<String> {
+    let is_utf16 = data.starts_with(b"\xff\xfe") || data.starts_with(b"\xfe\xff");
+    (!is_utf16 && std::str::from_utf8(data).is_err())
+        .then(|| "its text is not UTF-8 and is read as Latin-1; save it as UTF-8 if names are wrong".into())
 }
 
 /// Decodes UTF-16. `unit` puts the two bytes of a code unit in order.

@@ -17,7 +17,7 @@ use std::io::{self, Write};
 /// First reserved word of our own files ("HSPR"): meters, Y up, true radii.
 const MARK: u32 = u32::from_le_bytes(*b"HSPR");
 
-/// Bytes after the last array that align the end of a file, and are fewer than this.
+/// Zeros after the last array that align the end of a file, and are fewer than this.
 const PADDING: usize = 16;
 
 /// Header of version 4.0, 160 bytes. An offset of 0 means that the array is absent.
@@ -62,6 +62,8 @@ struct Header3 {
 
 /// Positions of the arrays, for either version.
 struct Layout {
+    /// Size of the header [bytes].
+    header: usize,
     strands: usize,
     points_per_strand: usize,
     positions: usize,
@@ -75,6 +77,32 @@ struct Layout {
     has_guide_table: bool,
     ours: bool,
     notes: Vec<String>,
+}
+
+impl Layout {
+    /// Checks that no array begins inside of the header. Only the positions are required.
+    fn check_offsets(&self) -> Result<(), Problem> {
+        let arrays = [
+            ("positions", self.positions, self.strands > 0),
+            ("strand texture coordinates", self.strand_uvs as usize, false),
+            ("point texture coordinates", self.point_uvs as usize, false),
+            ("thicknesses", self.thickness as usize, false),
+            ("colors", self.colors as usize, false),
+        ];
+        let inside = |(_, offset, required): &&(&str, usize, bool)| {
+            *offset < self.header && (*offset > 0 || *required)
+        };
+        match arrays.iter().find(inside) {
+            Some((name, offset, _)) => Err(Problem::new(
+                Place::Byte(0),
+                format!(
+                    "the header places the {name} at byte {offset}, inside of its own {} bytes; export the file again",
+                    self.header
+                ),
+            )),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Reads a `.tfx` file of version 1 to 4, in its own units.
@@ -105,6 +133,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
         ));
     }
     let mut groom = Groom::default();
+    layout.check_offsets()?;
     bytes.seek(layout.positions, "the array of positions")?;
     let mut notes = layout.notes;
     groom.points = match layout.width {
@@ -139,8 +168,11 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     if layout.point_uvs != 0 {
         end = end.max((layout.point_uvs as usize).saturating_add(points * size_of::<Vec2>()));
     }
-    let extra = data.len().saturating_sub(end);
-    if extra >= PADDING && !layout.has_guide_table {
+    let rest = data.get(end..).unwrap_or_default();
+    let extra = rest.len();
+    // A few zeros align the end of the file.
+    let is_padding = extra < PADDING && rest.iter().all(|byte| *byte == 0);
+    if !is_padding && !layout.has_guide_table {
         notes.push(format!(
             "{extra} bytes after the last array are not used; the header names fewer strands or arrays than the file holds"
         ));
@@ -186,6 +218,7 @@ fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
                 notes.push("its tips are marked as fixed; they are simulated as free".into());
             }
             Ok(Layout {
+                header: size_of::<Header3>(),
                 strands: h.strands as usize,
                 points_per_strand: h.points_per_strand as usize,
                 positions: h.positions as usize,
@@ -202,6 +235,7 @@ fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
         4 => {
             let h: Header4 = bytes.value("the header of version 4")?;
             Ok(Layout {
+                header: size_of::<Header4>(),
                 strands: h.strands as usize,
                 points_per_strand: h.points_per_strand as usize,
                 positions: h.positions as usize,
@@ -216,7 +250,12 @@ fn layout(bytes: &mut Bytes<'_>) -> Result<Layout, Problem> {
             })
         }
         _ => {
-            let text = format!(".tfx version {version} is not supported; export the file as version 3 or 4");
+            let text = match (1.0..100.0).contains(&version) {
+                true => format!(".tfx version {version} is not supported; export the file as version 3 or 4"),
+                false => {
+                    "a .tfx file begins with its version; this one does not, so it is no .tfx file".into()
+                }
+            };
             Err(Problem::new(Place::Byte(0), text))
         }
     }

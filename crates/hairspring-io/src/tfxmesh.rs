@@ -8,7 +8,7 @@ use crate::{
     Problem,
     obj::{DEFAULT_COLOR, DEFAULT_ROUGHNESS},
     skin::normalised,
-    text::{Words, as_text},
+    text::{Words, as_text, lines, without_comment},
 };
 use glam::{Affine3A, Vec3};
 use hairspring::body::{Body, Joint, Mesh, Part, Skin, Trs};
@@ -19,8 +19,7 @@ use hairspring::body::{Body, Joint, Mesh, Part, Skin, Trs};
 /// Returns an error for missing sections, indices out of order or out of range, or a truncated file.
 pub fn parse(data: &[u8]) -> Result<Body, Problem> {
     // Comments run to the end of their line. Replacing them by blanks keeps the line numbers.
-    let text: String =
-        as_text(data).lines().map(|l| l.split('#').next().unwrap_or("")).collect::<Vec<_>>().join("\n");
+    let text: String = lines(&as_text(data)).map(without_comment).collect::<Vec<_>>().join("\n");
     let mut words = Words::new(&text);
     let bones = count(&mut words, "numOfBones", u16::MAX as usize, text.len() / 2)?;
     let mut joints = Vec::with_capacity(bones);

@@ -3,7 +3,7 @@
 use crate::strays::Strays;
 use glam::{Affine3A, Quat, Vec3};
 use hairspring::{
-    body::{Body, Clip, Joint, Trs},
+    body::{Body, Clip, Joint, Mesh, Trs},
     groom::Groom,
 };
 use serde::{Deserialize, Serialize};
@@ -41,6 +41,8 @@ pub(crate) struct FileUnits {
 const BODY: std::ops::RangeInclusive<f32> = 0.15..=2.5;
 /// Typical sizes of a body, which a guess tries to match [m]: a bust, an adult.
 const TYPICAL_BODIES: [f32; 2] = [0.5, 1.7];
+/// Shortest side of the box around a head or a bust, at least, over the longest [1]. A standing adult is flatter.
+const COMPACT: f32 = 0.4;
 
 /// Plausible sizes of the longest side of the box around a head of hair [m].
 const HAIR: std::ops::RangeInclusive<f32> = 0.1..=1.5;
@@ -87,28 +89,58 @@ impl WholeBody {
     }
 }
 
-/// Returns the scale and rotation to apply to a mesh, and adds a note about whatever was guessed. `points` are those
-/// of the mesh [file units]. `whole` is the body that it belongs to, and its placement.
+/// What a scene tells about the unit of a mesh, if its file does not.
+#[derive(Clone, Copy)]
+pub(crate) enum UnitHint<'a> {
+    None,
+    /// The body that the mesh belongs to, and the placement of the mesh.
+    PartOf(WholeBody, Affine3A),
+    /// Chooses among units [m] by the grooms that grow on the mesh. The second argument returns the mesh in a unit.
+    Grown(&'a dyn Fn(&[f32], &dyn Fn(f32) -> Mesh) -> Option<f32>),
+}
+
+/// Returns the scale and rotation to apply to a mesh, and adds a note about whatever was guessed.
 pub(crate) fn settle(
     options: &ReadOptions,
     file: FileUnits,
-    points: &[Vec3],
-    whole: Option<(WholeBody, Affine3A)>,
+    mesh: &Mesh,
+    hint: UnitHint<'_>,
     notes: &mut Vec<String>,
 ) -> (f32, Quat) {
     let turn = turn_of(options.up.or(file.up).unwrap_or(Axis::Y));
     let scale = options.scale.or(file.scale).unwrap_or_else(|| {
-        let (lo, hi) = bounds(points.iter().filter(|p| p.is_finite()).map(|p| turned(turn, *p)));
+        let points = mesh.positions.iter();
+        let (lo, hi) = bounds(points.filter(|p| p.is_finite()).map(|p| turned(turn, *p)));
         let extent = (hi - lo).max_element();
-        let (own, note) = guess_body(extent);
-        if let Some((body, place)) = whole
-            && body.shares_unit([lo, hi], place, own)
-        {
-            let (unit, size) = (unit_name(body.scale), extent * body.scale);
-            notes.push(format!(
-                "the file has no unit; read in that of the body, {unit} (its longest side is then {size:.3} m); set `scale` to change it"
-            ));
-            return body.scale;
+        let (own, note) = guess_body(hi - lo);
+        match hint {
+            UnitHint::PartOf(body, place) if body.shares_unit([lo, hi], place, own) => {
+                let (unit, size) = (unit_name(body.scale), extent * body.scale);
+                notes.push(format!(
+                    "the file has no unit; read in that of the body, {unit} (its longest side is then {size:.3} m); set `scale` to change it"
+                ));
+                return body.scale;
+            }
+            // Meters are hardly ever another unit.
+            UnitHint::Grown(choose) if own != 1.0 => {
+                let fits = |scale: &f32| *scale != own && BODY.contains(&(extent * scale));
+                let others = UNITS.into_iter().map(|(scale, _)| scale).filter(fits);
+                let units: Vec<f32> = std::iter::once(own).chain(others).collect();
+                let of_unit = |scale: f32| {
+                    let positions = mesh.positions.iter().map(|p| turned(turn, *p) * scale).collect();
+                    Mesh { positions, triangles: mesh.triangles.clone(), ..Mesh::default() }
+                };
+                let grown = (units.len() > 1).then(|| choose(&units, &of_unit)).flatten();
+                if let Some(unit) = grown.filter(|unit| *unit != own) {
+                    notes.push(format!(
+                        "the file has no unit; guessed {}, which puts the roots of the hair on its skin (its longest side is then {:.3} m); set `scale` to change it",
+                        unit_name(unit),
+                        extent * unit
+                    ));
+                    return unit;
+                }
+            }
+            _ => {}
         }
         notes.extend(note);
         own
@@ -146,21 +178,24 @@ pub(crate) fn turn_of(up: Axis) -> Quat {
     }
 }
 
-/// Guesses the meters per unit of a body whose box has a longest side of `extent` units, and returns a note
-/// about it. The unit is meters if that is plausible, otherwise the unit that gives a plausible size, and of
-/// those the one nearest to a typical size.
-fn guess_body(extent: f32) -> (f32, Option<String>) {
+/// Guesses the meters per unit of a body whose box has these sides [file units], and returns a note about it. The unit is
+/// meters if that is plausible, otherwise the unit that gives a plausible size, and of those the one nearest to a typical
+/// size. Few tools use decimeters: in centimeters, a head may have the size of an adult in decimeters, but not its shape.
+fn guess_body(sides: Vec3) -> (f32, Option<String>) {
+    let extent = sides.max_element();
     if !(extent.is_finite() && extent > 0.0) {
         return (1.0, None);
     }
     if BODY.contains(&extent) {
         return (1.0, Some(note(1.0, extent, true)));
     }
+    let is_head = sides.min_element() >= COMPACT * extent && BODY.contains(&(extent * 0.01));
     let off = |scale: f32| {
-        let typical = TYPICAL_BODIES.iter();
-        let off = typical.map(|t| (extent * scale / t).ln().abs()).fold(f32::INFINITY, f32::min);
+        let off =
+            TYPICAL_BODIES.iter().map(|t| (extent * scale / t).ln().abs()).fold(f32::INFINITY, f32::min);
         // A plausible size comes first.
-        if BODY.contains(&(extent * scale)) { off } else { off + 100.0 }
+        let plausible = BODY.contains(&(extent * scale)) && !(scale == 0.1 && is_head);
+        if plausible { off } else { off + 100.0 }
     };
     let scale = nearest(off);
     (scale, Some(note(scale, extent * scale, BODY.contains(&(extent * scale)))))

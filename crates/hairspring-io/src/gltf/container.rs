@@ -5,7 +5,7 @@ use super::{
     json::{self, Document},
     uri,
 };
-use crate::{Place, Problem, bytes::Bytes};
+use crate::{Place, Problem, bytes::Bytes, contents::packed};
 use std::{borrow::Cow, collections::HashMap};
 
 /// Largest size of all buffers together [bytes].
@@ -54,7 +54,11 @@ pub(super) fn open<'a>(
         }
         let (have, want) = (slot.map_or(usize::MAX, |slot| stored[slot].len()), buffer.byte_length);
         if have < want {
-            return Err(Problem::whole(format!("buffer {index} has {have} bytes, but {want} are declared")));
+            let what = slot.and_then(|slot| packed(&stored[slot])).map(|what| format!("; {what}"));
+            return Err(Problem::whole(format!(
+                "buffer {index} has {have} bytes, but {want} are declared{}",
+                what.unwrap_or_default()
+            )));
         }
         of.push(slot);
     }

@@ -21,6 +21,8 @@ pub(super) struct Opened {
     pub header: Header,
     /// Offset of the first row [bytes].
     rows: usize,
+    /// Whether lines end in CR.
+    cr: bool,
     /// Number of lines of the header.
     lines: usize,
 }
@@ -78,7 +80,7 @@ pub(super) fn open(data: &[u8]) -> Result<Opened, Problem> {
             shortened(&element.name),
             element.count
         ))),
-        None => Ok(Opened { header, rows, lines }),
+        None => Ok(Opened { header, rows, cr, lines }),
     }
 }
 
@@ -90,9 +92,20 @@ pub(super) struct Payload<'a> {
     size: usize,
 }
 
-/// Returns the file with all numbers of its rows as the parser accepts them: with digits on both sides of the point,
-/// as in `1.0` for `1.` and `0.5` for `.5`. Binary files are not changed.
-pub(super) fn with_digits<'a>(opened: &Opened, data: &'a [u8]) -> Cow<'a, [u8]> {
+/// Returns the file with the rows of text as the parser accepts them: with lines that end in LF, and with digits on both
+/// sides of the point of a number, as in `1.0` for `1.` and `0.5` for `.5`. Binary files are not changed.
+pub(super) fn readable_rows<'a>(opened: &Opened, data: &'a [u8]) -> Cow<'a, [u8]> {
+    let (head, rows) = data.split_at(opened.rows);
+    if opened.cr && opened.header.encoding == Encoding::Ascii {
+        let lines = rows.iter().map(|byte| if *byte == b'\r' { b'\n' } else { *byte });
+        let data = head.iter().copied().chain(lines).collect::<Vec<u8>>();
+        return Cow::Owned(with_digits(opened, &data).into_owned());
+    }
+    with_digits(opened, data)
+}
+
+/// Adds the digits.
+fn with_digits<'a>(opened: &Opened, data: &'a [u8]) -> Cow<'a, [u8]> {
     let (head, rows) = data.split_at(opened.rows);
     let digit = |k: Option<usize>| k.and_then(|k| rows.get(k)).is_some_and(u8::is_ascii_digit);
     // Whether a digit is missing before and after the point at `k`. A point without any digit is no number.

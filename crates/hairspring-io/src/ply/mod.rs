@@ -72,7 +72,7 @@ pub(crate) fn read(data: &[u8]) -> Result<Read, Problem> {
     let opened = file::open(data)?;
     let header = &opened.header;
     let source = source(header)?;
-    let data = &file::with_digits(&opened, data);
+    let data = &file::readable_rows(&opened, data);
     let mut payload = Payload::new(&opened, data);
     let (mut vertices, mut edges, mut strands) = (Vec::new(), Vec::new(), Vec::new());
     for element in header.elements.values() {

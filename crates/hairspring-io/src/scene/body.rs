@@ -10,7 +10,7 @@ use crate::{
     Character, ReadOptions, Result, load,
     load::read_mesh,
     makehuman, obj,
-    units::{self, WholeBody},
+    units::{self, UnitHint, WholeBody},
 };
 use glam::{Affine3A, Mat3A, Vec3};
 use hairspring::body::{Body, Joint, Mesh, Part, Skin};
@@ -52,8 +52,19 @@ impl Reader<'_> {
         let mut character = match (&named.rig, &named.weights) {
             (Some(rig), Some(weights)) => self.rigged(named, rig, weights, &options)?,
             (None, None) => {
-                let whole = self.whole.map(|whole| (whole, transform));
-                let loaded = self.named(read_mesh(&path, &options, whole), &named.file, what)?;
+                let grown = |units: &[f32], mesh: &dyn Fn(f32) -> Mesh| {
+                    self.body_unit(units, &|unit| {
+                        let mut body = Body::rigid(mesh(unit));
+                        place(&mut body, transform);
+                        body.mesh
+                    })
+                };
+                let hint = match self.whole {
+                    Some(whole) => UnitHint::PartOf(whole, transform),
+                    None if what == "body" => UnitHint::Grown(&grown),
+                    None => UnitHint::None,
+                };
+                let loaded = self.named(read_mesh(&path, &options, hint), &named.file, what)?;
                 self.note(&path, loaded.notes);
                 scale = loaded.scale;
                 loaded.value

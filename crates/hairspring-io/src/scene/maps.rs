@@ -9,7 +9,11 @@ use super::{
     Reader,
     map_file::{Channel, MapFile, MapsFile},
 };
-use crate::{Place, Problem, Result, load, picture::Picture, text::as_text};
+use crate::{
+    Place, Problem, Result, load,
+    picture::Picture,
+    text::{as_text, lines, remedy},
+};
 use glam::{Vec2, Vec3};
 use hairspring::{
     body::Mesh,
@@ -257,11 +261,14 @@ fn texture_axes(mesh: &Mesh, triangle: usize) -> [Vec3; 2] {
 fn numbers(data: &[u8], strands: usize, each: usize) -> std::result::Result<Vec<f32>, Problem> {
     let text = as_text(data);
     let mut values = Vec::new();
-    for (k, line) in text.lines().enumerate() {
+    for (k, line) in lines(&text).enumerate() {
         for word in line.split([' ', '\t', ',', ';']).filter(|word| !word.is_empty()) {
             let number = word.parse::<f32>().ok().filter(|number| number.is_finite());
             values.push(number.ok_or_else(|| {
-                Problem::new(Place::Line(k + 1), format!("expected a number, but found {word:?}"))
+                Problem::new(
+                    Place::Line(k + 1),
+                    format!("expected a number, but found {word:?}{}", remedy(word)),
+                )
             })?);
         }
     }

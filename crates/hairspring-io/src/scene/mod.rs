@@ -3,6 +3,7 @@
 
 mod air;
 mod body;
+mod body_unit;
 mod builtin;
 mod check;
 mod exact_arrays;
@@ -13,6 +14,7 @@ mod groom;
 mod groom_file;
 mod grow;
 mod hull_points;
+mod implausible;
 mod map_file;
 mod maps;
 mod material;
@@ -25,12 +27,15 @@ mod settings;
 mod vertex_cache;
 
 use crate::{
-    Error, Format, Loaded, Problem, ReadOptions, Result, load, load::read_mesh, text::as_text,
-    units::WholeBody,
+    Error, Format, Loaded, Problem, ReadOptions, Result, load,
+    load::read_mesh,
+    text::as_text,
+    units::{UnitHint, WholeBody},
 };
 use exact_arrays::Exact;
 use file::{FileName, SceneFile};
 use glam::Affine3A;
+use groom_file::GroomFile;
 use hairspring::groom::Repairs;
 use hairspring_scene::{Scene, Shape};
 use sentence::{line_at, line_of_key, problem};
@@ -67,10 +72,11 @@ pub fn scene_text(path: &Path) -> Result<String> {
 /// See [`read_scene`].
 pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
     let file = parse(text).map_err(|p| p.in_file(path))?;
-    let mut reader = Reader::new(path, text);
+    let mut reader = Reader::new(path, text, &file.groom);
     let mut scene = reader.settings(&file)?;
     reader.geometry(&file, &mut scene)?;
     reader.notes.extend(material::unused(&file));
+    reader.notes.extend(implausible::notes(&file));
     let Reader { repairs, notes, .. } = reader;
     Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs, notes: load::plain(notes) })
 }
@@ -78,13 +84,14 @@ pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
 /// Reads only the settings of such a text, for `Stage::update_settings`. This is fast. The scene is that of
 /// [`read_scene_text`] without its geometry: grooms have their materials, guides, effects and look, but no
 /// strands, and there is no body, collision mesh, sheet or clip. The only files that are opened are those of
-/// convex hulls of colliders, and that of the body if a hull's file has no unit.
+/// convex hulls of colliders, and that of the body if a hull's file has no unit, with those of grooms if they decide its
+/// unit.
 ///
 /// # Errors
 /// See [`read_scene`], except for errors about other files and the body's joints.
 pub fn read_settings(path: &Path, text: &str) -> Result<Scene> {
     let file = parse(text).map_err(|p| p.in_file(path))?;
-    Reader::new(path, text).settings(&file)
+    Reader::new(path, text, &file.groom).settings(&file)
 }
 
 /// Whether two texts of scene files differ only in what `Stage::update_settings` can apply, so that the hair,
@@ -123,10 +130,23 @@ fn parse(text: &str) -> std::result::Result<SceneFile, Problem> {
     Ok(file)
 }
 
+/// What to do about a name with a backslash, which is no separator, or that of an escape sequence.
+fn backslash_hint(name: &Path) -> &'static str {
+    let name = name.to_string_lossy();
+    if name.contains(char::is_control) {
+        "; a backslash in double quotes begins an escape sequence: write paths with / or in single quotes"
+    } else if name.contains('\\') && !cfg!(windows) {
+        "; write paths with /"
+    } else {
+        ""
+    }
+}
+
 /// Reads the files that a scene file names.
 struct Reader<'a> {
     path: &'a Path,
     text: &'a str,
+    grooms: &'a [GroomFile],
     notes: Vec<String>,
     repairs: Repairs,
     /// The body, once its first file is read.
@@ -134,8 +154,8 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn new(path: &'a Path, text: &'a str) -> Self {
-        Self { path, text, notes: Vec::new(), repairs: Repairs::default(), whole: None }
+    fn new(path: &'a Path, text: &'a str, grooms: &'a [GroomFile]) -> Self {
+        Self { path, text, grooms, notes: Vec::new(), repairs: Repairs::default(), whole: None }
     }
 
     /// Returns the path of a file that the scene names.
@@ -149,7 +169,9 @@ impl<'a> Reader<'a> {
         let line = line_at(self.text, name.span().start);
         result.map_err(|error| match error {
             Error::NotFound { path, why } if why.is_empty() => {
-                let why = format!("; {}, line {line}, names it as the {what}", self.path.display());
+                let scene = self.path.display();
+                let hint = backslash_hint(name.get_ref());
+                let why = format!("; {scene}, line {line}, names it as the {what}{hint}");
                 Error::NotFound { path, why }
             }
             // The content of the scene is wrong.
@@ -183,8 +205,8 @@ impl<'a> Reader<'a> {
         let file = toml::Spanned::new(near..near, file.clone());
         let path = self.resolve(&file);
         let options = ReadOptions { scale: *scale, up: None };
-        let whole = self.whole.map(|whole| (whole, Affine3A::IDENTITY));
-        let loaded = self.named(read_mesh(&path, &options, whole), &file, "hull")?;
+        let hint = self.whole.map_or(UnitHint::None, |whole| UnitHint::PartOf(whole, Affine3A::IDENTITY));
+        let loaded = self.named(read_mesh(&path, &options, hint), &file, "hull")?;
         let vertices = loaded.value.body.mesh.positions;
         let (count, points) = (vertices.len(), hull_points::outermost(vertices));
         let mut notes = loaded.notes;

@@ -16,6 +16,9 @@ pub(super) fn line_at(text: &str, byte: usize) -> usize {
 pub(super) fn problem(text: &str, error: &toml::de::Error) -> Problem {
     match error.span() {
         Some(span) => {
+            if is_wrong_escape(error.message()) {
+                return Problem::line(line_at(text, span.start), WRONG_ESCAPE);
+            }
             if let Some(sentence) = wrong_brackets(text, span.start, error.message()) {
                 return Problem::line(line_at(text, span.start), sentence);
             }
@@ -40,6 +43,14 @@ pub(super) fn problem_in_table(
     let from = line_at(text, start);
     let line = named.or(path.map(key_of)).and_then(|key| line_of_key(text, from, key)).unwrap_or(from);
     Problem::line(line, reworded(error.message(), path))
+}
+
+/// The sentence for an unknown escape sequence, which is often a path of Windows.
+const WRONG_ESCAPE: &str = "a backslash in double quotes begins an escape sequence, and this one is unknown; write paths with / or in single quotes";
+
+/// Whether TOML reports an escape sequence that it does not know.
+fn is_wrong_escape(message: &str) -> bool {
+    ["missing escaped value", "too few unicode value digits"].iter().any(|start| message.starts_with(start))
 }
 
 /// The key of a field in its table.

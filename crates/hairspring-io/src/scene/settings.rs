@@ -67,7 +67,7 @@ impl Reader<'_> {
         if let Some(named) = &file.body
             && file.collider.iter().any(|collider| is_open(&collider.shape))
         {
-            let mut reader = Reader::new(self.path, self.text);
+            let mut reader = Reader::new(self.path, self.text, self.grooms);
             if reader.piece(named, "body").is_ok() {
                 self.whole = reader.whole;
             }

@@ -82,7 +82,8 @@ pub fn all() -> Vec<Sample> {
     ]
 }
 
-fn tfx_3() -> Vec<u8> {
+/// A `.tfx` of version 3 with two strands.
+pub fn tfx_3() -> Vec<u8> {
     let mut words = vec![0u32; 74];
     words[..4].copy_from_slice(&[3f32.to_bits(), 2, 3, 4]);
     words[36] = 296;
@@ -191,7 +192,9 @@ pub const PLY_IDS: &str = "ply\r\nformat ascii 1.0\r\nelement vertex 5\r\nproper
     property float z\r\nproperty int strand_id\r\nproperty float curl\r\nend_header\r\n\
     0 0 0 7 0\r\n1 0 0 7 0\r\n2 0 0 -1 0\r\n3 0 0 -1 0\r\n4 0 0 7 0\r\n";
 
-fn motion() -> String {
+/// The text of a `.bvh` of two joints and two frames.
+/// The text of a `.bvh` of two joints and two frames.
+pub fn motion() -> String {
     "HIERARCHY\nROOT Hips\n{\n OFFSET 0 1 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation Xrotation\n\
      JOINT Head\n {\n OFFSET 0 0.5 0\n CHANNELS 3 Yrotation Xrotation Zrotation\n End Site\n {\n OFFSET 0 0.2 0\n }\n }\n}\n\
      MOTION\nFrames: 2\nFrame Time: 0.0333\n0 1 0 10 20 30 1 2 3\n0 1.1 0 10 20 30 1 2 4\n"

@@ -243,11 +243,35 @@ fn frames_beyond_the_count_of_the_header_are_reported() {
     assert!(notes.contains("names 0 frames; 8 were counted"), "{notes}");
     let (clip, notes) = read(&(bvh("Frames: 2\nFrame Time: 0.02\n", 2) + "1 2 3\n")).unwrap();
     assert_eq!(clip.frame_count(), 2);
-    assert!(notes.contains("3 numbers follow the last frame"), "{notes}");
+    assert!(notes.contains("3 words follow the last frame and are not used"), "{notes}");
     let error = read(&bvh("Frames: 0\nFrame Time: 0.02\n", 0)).unwrap_err();
     assert!(error.contains("line 17") && error.contains("no frames"), "{error}");
-    let error = read(&bvh("Frames: 9\nFrame Time: 0.02\n", 8)).unwrap_err();
-    assert!(error.contains("frame 8") && error.contains("the file ends"), "{error}");
+    // A wrong word is an error, not the end of the file.
+    for named in [0, 9] {
+        let broken =
+            bvh(&format!("Frames: {named}\nFrame Time: 0.02\n"), 9).replace("0 0 0 0 5 0", "0 0 0 0 nan 0");
+        let error = read(&broken).unwrap_err();
+        assert!(error.contains("line 24: expected a number of frame 5, found `nan`"), "{error}");
+    }
+}
+
+#[test]
+fn files_that_are_cut_short_are_read_to_the_last_whole_frame() {
+    for named in [9, 1000, usize::MAX] {
+        let header = format!("Frames: {named}\nFrame Time: 0.02\n");
+        let (clip, notes) = read(&bvh(&header, 8)).unwrap();
+        assert_eq!(clip.frame_count(), 8);
+        assert!(
+            notes.contains(&format!("names {named} frames, but the file holds 8; these are used")),
+            "{notes}"
+        );
+        assert!(notes.contains("export the motion again"), "{notes}");
+        let (clip, notes) = read(&(bvh(&header, 8) + "1 2 3 4")).unwrap();
+        assert_eq!(clip.frame_count(), 8);
+        assert!(notes.contains("holds 8 and 4 numbers of another one, which are not used"), "{notes}");
+    }
+    let error = read(&(bvh("Frames: 2\nFrame Time: 0.02\n", 0) + "1 2 3 4")).unwrap_err();
+    assert!(error.contains("line 17: the file holds no frames"), "{error}");
 }
 
 #[test]

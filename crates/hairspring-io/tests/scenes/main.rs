@@ -4,9 +4,11 @@
 mod scenes;
 
 mod arrays_have_the_length_of_their_field;
+mod backslashes_in_paths_are_explained;
 mod book;
 mod book_is_complete;
 mod book_states_the_definitions;
+mod lengths_of_no_hair_are_reported;
 mod maps_vary_parameters_over_the_scalp;
 mod props_move_by_their_own_keys;
 mod scene_file_errors_name_line_and_remedy;

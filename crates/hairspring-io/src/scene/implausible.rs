@@ -1,0 +1,26 @@
+//! Values of a scene that are allowed, but are probably in another unit than meters.
+
+use super::file::SceneFile;
+
+/// Length of grown hair that is reported [m]. The longest hair of people has more, but hardly ever.
+const LONG: f32 = 3.0;
+/// Radius of a fiber that is reported [m]: four times that of a whisker.
+const THICK: f64 = 1e-3;
+
+/// Notes about lengths and radii that no hair has.
+pub(super) fn notes(scene: &SceneFile) -> Vec<String> {
+    let grown = scene.groom.iter().filter_map(|groom| groom.grow.as_ref());
+    let lengths = grown.map(|grow| grow.get_ref().growth().length).filter(|length| *length > LONG);
+    let lengths = lengths.map(|length| {
+        format!("`grow` has hair of {length} m; lengths are in meters, so correct `length` if that is wrong")
+    });
+    let radius = |table: &toml::Table| table.get("radius").and_then(toml::Value::as_float);
+    let radii = scene.material.iter().filter_map(|(name, table)| Some((name, radius(table.get_ref())?)));
+    let radii = radii.filter(|(_, radius)| *radius > THICK).map(|(name, radius)| {
+        format!(
+            "[material.{name}] has hair that is {:.3} m thick; lengths are in meters, so correct `radius` if that is wrong",
+            2.0 * radius
+        )
+    });
+    lengths.chain(radii).collect()
+}
