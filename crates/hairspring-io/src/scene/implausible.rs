@@ -2,9 +2,9 @@
 
 use super::file::SceneFile;
 
-/// Length of grown hair that is reported [m]. The longest hair of people has more, but hardly ever.
+/// Length of grown hair above which it is reported [m]. Few people have longer hair.
 const LONG: f32 = 3.0;
-/// Radius of a fiber that is reported [m]: four times that of a whisker.
+/// Radius of a fiber above which it is reported [m]: four times that of a whisker.
 const THICK: f64 = 1e-3;
 
 /// Notes about lengths and radii that no hair has.

@@ -6,6 +6,7 @@ mod gltf_file;
 mod samples;
 
 mod bad_files_are_refused;
+mod bodies_have_the_unit_of_their_shape_and_hair;
 mod comments_begin_after_a_space;
 mod errors_name_the_line_at_any_line_end;
 mod example_meshes_are_made_by_code;
