@@ -82,8 +82,12 @@ pub fn relax<S: Simd>(
                 let near = distance.simd_lt(link.length);
                 let carried = size(surface_displacement(simd, pose, world(edge)));
                 most = near.select(most.max(carried), most);
-                // With that length, the point may be deeper in the collider than the correction left it.
-                let inside = distance.simd_lt(clearance - link.slack()) & relaxed;
+                // With that length, the point may be deeper in the collider than the correction left it. Out of a rod or a
+                // box thinner than the segment is long, the nearest way may be through it.
+                let mut inside = distance.simd_lt(clearance - link.slack()) & relaxed;
+                if let Some(edges) = &pose.edges {
+                    inside &= link.length.simd_lt(2.0 * edges.half_thickness());
+                }
                 if inside.any_true() {
                     let allowed = clearance.min(contact(simd, pose, world(corrected)).0);
                     let depth = inside.select((allowed - distance).max(0.0), F::splat(simd, 0.0));
