@@ -77,7 +77,7 @@ pub(crate) fn parse_with_notes(data: &[u8]) -> Result<(Mesh, Vec<String>), Probl
                 }
             }
             Some("l") => left_out.lines += 1,
-            Some("p") => left_out.points += 1,
+            Some("p") => left_out.points += words.count(),
             Some("call") => left_out.calls += 1,
             Some("curv" | "curv2" | "surf") => left_out.surfaces += 1,
             Some("g" | "o") => {
@@ -150,7 +150,7 @@ pub(crate) fn read_groom(data: &[u8]) -> Result<Read, Problem> {
             }
             Some("vt") => uvs.push(texture_coordinate(&mut words, line_number)?),
             Some("f" | "fo") => faces += 1,
-            Some("p") => points += 1,
+            Some("p") => points += words.count(),
             Some("call") => calls += 1,
             Some("l") => {
                 let counts = [vertices.len(), uvs.len()];
@@ -277,7 +277,7 @@ fn color<'a>(words: impl Iterator<Item = &'a str>, line: usize) -> Result<Option
     let mut numbers = [0.0; 3];
     let mut count = 0;
     for word in words {
-        let number = word.parse().map_err(|_| expected("the color of a vertex", "numbers", word, line))?;
+        let number = word.parse().map_err(|_| expected("only numbers after a vertex", word, line))?;
         if let Some(slot) = numbers.get_mut(count) {
             *slot = number;
         }
@@ -326,18 +326,18 @@ fn numbers<'a, const N: usize>(
     let mut out = [0.0; N];
     for x in &mut out {
         let word = words.next().unwrap_or("");
-        *x = finite(word).ok_or_else(|| expected(what, &plural(N), word, line))?;
+        *x = finite(word).ok_or_else(|| expected(&format!("{what} of {}", plural(N)), word, line))?;
     }
     Ok(out)
 }
 
-/// Says that `what` was expected, which consists of `numbers`, and what was found.
-fn expected(what: &str, numbers: &str, word: &str, line: usize) -> Problem {
+/// Says that `what` was expected, and what was found.
+fn expected(what: &str, word: &str, line: usize) -> Problem {
     let found = match word {
         "" => "but the line ends".into(),
         _ => format!("found `{}`{}", shortened(word), remedy(word)),
     };
-    Problem::line(line, format!("expected {what} of {numbers}, {found}"))
+    Problem::line(line, format!("expected {what}, {found}"))
 }
 
 /// `1 number`, `3 numbers`.

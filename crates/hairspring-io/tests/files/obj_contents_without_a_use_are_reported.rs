@@ -22,7 +22,7 @@ fn read(data: &[u8]) -> Loaded<Character> {
 #[test]
 fn points_and_other_files_are_reported() {
     let loaded = read(format!("{}p 1 2\np 3\ncall other.obj\n", cube()).as_bytes());
-    assert!(loaded.notes[0].starts_with("2 points (`p`)"), "{:?}", loaded.notes);
+    assert!(loaded.notes[0].starts_with("3 points (`p`)"), "{:?}", loaded.notes);
     assert!(loaded.notes[1].starts_with("1 other files are named by `call`"), "{:?}", loaded.notes);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.obj");
