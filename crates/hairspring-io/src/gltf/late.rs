@@ -5,7 +5,10 @@ use super::sampling::Sampling;
 /// Time of a first key from which on the pause before it is noted [s]: programs begin at frame 1.
 const PAUSE: f32 = 0.1;
 
-/// Animations whose first key is late.
+/// Time before 0 s that is due to rounding [s].
+const ROUNDING: f32 = 1e-3;
+
+/// Animations whose first key is late or before 0 s.
 #[derive(Default)]
 pub(super) struct Late {
     /// A sentence about the first that waits for its first key, and the number of others.
@@ -19,7 +22,7 @@ pub(super) struct Late {
 impl Late {
     /// Adds an animation with its first key at `first` [s].
     pub(super) fn add(&mut self, name: &str, first: f32, sampling: &Sampling) {
-        if (0.0..PAUSE).contains(&first) {
+        if (-ROUNDING..PAUSE).contains(&first) {
             return;
         }
         let has_key = format!("animation {name:?} has its first key at {first:.2} s");

@@ -68,7 +68,7 @@ impl Scales {
         });
         let mirrored = self.mirrored.named(skeleton).map(|(joints, time)| {
             format!(
-                "animation {animation:?} mirrors {joints} at {time:.2} s, because the scale changes its sign; hair is turned and not mirrored; keep the sign of the scale"
+                "animation {animation:?} mirrors {joints} at {time:.2} s, because the scale changes its sign; hair is not mirrored and may point into the body; keep the sign of the scale"
             )
         });
         hidden.into_iter().chain(mirrored)

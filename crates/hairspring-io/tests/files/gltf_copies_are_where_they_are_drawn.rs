@@ -91,7 +91,7 @@ fn copies_that_cannot_be_placed_are_refused_or_noted() {
     assert_noted_once(&notes, &["1 nodes draw copies of a mesh with a skin"]);
     // Copies of copies are limited, also those without vertices.
     let mut file = GltfFile::tetrahedron();
-    let many = file.bytes(5120, "VEC3", 400_000, &vec![0; 1_200_000]);
+    let many = file.push("accessors", json!({"componentType": 5126, "count": 400_000, "type": "VEC3"}));
     let instancing = json!({"EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": many}}});
     file.json["nodes"][0]["extensions"] = instancing;
     assert!(refused(&file).limit, "{}", refused(&file));

@@ -563,7 +563,7 @@ fn an_avatar_that_looks_along_minus_z_is_turned() {
     }
     file.primitive()["mode"] = json!(3);
     let strand = gltf::parse_groom(&file.glb(), &|_| None).unwrap().points;
-    assert!(strand[1].distance(Vec3::new(-0.3, 1.0, -0.3)) < 1e-6, "{}", strand[1]);
+    assert!(strand[1].distance(Vec3::new(-0.2, 1.1, -0.3)) < 1e-6, "{}", strand[1]);
 }
 
 #[test]

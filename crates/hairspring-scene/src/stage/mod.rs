@@ -122,8 +122,8 @@ impl Stage {
         }
         let joints = Joints::new(&scene, scene.body.as_ref())?;
         let cache = body_pose::take_vertex_cache(&mut scene);
-        check_motion(&scene)?;
         check_anchor(&scene)?;
+        check_motion(&scene)?;
         let body = StagedBody::new(&scene, &joints, cache);
         let grooms = std::mem::take(&mut scene.grooms);
         let mut hair: Vec<StagedHair> = Vec::with_capacity(grooms.len());
