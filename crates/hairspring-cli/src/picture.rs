@@ -244,6 +244,9 @@ impl Studio {
             }
             Painter::Cpu(renderer) => {
                 let last = self.last.as_ref().filter(|_| !stage.cut());
+                // A plain backdrop is put behind the developed picture.
+                let plain = now.background.plain().filter(|_| !transparent && format != Format::Layers);
+                let transparent = transparent || plain.is_some();
                 let color = match last.filter(|_| picture.shutter > 0.0) {
                     Some(last) => blurred(renderer, &now, last, &picture, transparent, &mut timings),
                     None => renderer.draw_linear(&now, transparent),
@@ -255,7 +258,10 @@ impl Studio {
                     timings = sum(timings, renderer.timings());
                     layers = Some(Box::new(Layers { color, geometry }));
                 } else {
-                    self.image = color.develop();
+                    self.image = match plain {
+                        Some(plain) => color.develop_on(plain),
+                        None => color.develop(),
+                    };
                 }
             }
         }

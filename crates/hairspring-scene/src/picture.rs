@@ -24,7 +24,8 @@ define_settings! {
         /// channel; JPEG, clips and the window have none and show the backdrop. `automatic`: the backdrop, and
         /// nothing in EXR files.
         background: Background = Background::Automatic, "none", {words};
-        /// Color of the backdrop at the center of the picture. Two equal colors give a plain backdrop.
+        /// Color of the backdrop at the center of the picture. Two equal colors give a plain backdrop, whose
+        /// pixels have exactly this color; the tone curve applies to two different ones.
         #[serde(deserialize_with = "crate::deserialize_color")]
         backdrop_center: Vec3 = Vec3::new(0.16, 0.165, 0.18), "linear RGB", {color}, when BACKDROP;
         /// Color of the backdrop in the corners of the picture.

@@ -81,6 +81,13 @@ impl Background {
     pub fn of(picture: &Picture) -> Self {
         Self { center: picture.backdrop_center, edge: picture.backdrop_edge }
     }
+
+    /// The color of a plain backdrop, which is the same everywhere. It is no lit wall but a color behind the developed
+    /// picture: exposure and tone curve do not apply to it, so that its pixels have exactly this color.
+    pub fn plain(&self) -> Option<Vec3> {
+        (self.center == self.edge && self.center.is_finite())
+            .then(|| self.center.clamp(Vec3::ZERO, Vec3::ONE))
+    }
 }
 
 impl Default for Background {

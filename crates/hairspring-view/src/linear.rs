@@ -2,7 +2,7 @@
 
 use crate::{
     image::Image,
-    tonemap::{Encoder, filmic},
+    tonemap::{Encoder, filmic, filmic_on},
 };
 use glam::{Vec3, Vec4};
 use rayon::prelude::*;
@@ -57,18 +57,31 @@ impl LinearImage {
     /// The picture as it is shown: tone curve, sRGB, 8 bits. It has an alpha channel if a pixel is
     /// transparent; colors are then those of the visible part of each pixel.
     pub fn develop(&self) -> Image {
-        let encoder = Encoder::default();
-        let width = self.width.max(1) as usize;
-        let mut image = Image::new(self.width, self.height);
-        image.rgb.par_chunks_mut(3).zip(&self.rgba).enumerate().for_each(|(i, (out, pixel))| {
+        let shown = |pixel: &Vec4| {
             let light = pixel.truncate() / pixel.w.max(1e-6);
-            let light = if pixel.w > 0.0 { light } else { Vec3::ZERO };
-            out.copy_from_slice(&encoder.encode(filmic(light), i % width, i / width));
-        });
+            filmic(if pixel.w > 0.0 { light } else { Vec3::ZERO })
+        };
+        let mut image = self.encoded(shown);
         // A mean of opaque pixels may miss 1 by rounding.
         if self.rgba.iter().any(|p| p.w < 1.0 - 1e-4) {
             image.alpha = self.rgba.par_iter().map(|p| (p.w * 255.0 + 0.5) as u8).collect();
         }
+        image
+    }
+
+    /// The same for a transparent picture on a plain backdrop (see [`Background::plain`](crate::Background::plain)): no pixel is transparent.
+    pub fn develop_on(&self, plain: Vec3) -> Image {
+        self.encoded(|pixel| filmic_on(plain, pixel.truncate(), Vec3::splat(pixel.w)))
+    }
+
+    /// The picture with `shown` colors, in 8 bits.
+    fn encoded(&self, shown: impl Fn(&Vec4) -> Vec3 + Sync) -> Image {
+        let encoder = Encoder::default();
+        let width = self.width.max(1) as usize;
+        let mut image = Image::new(self.width, self.height);
+        image.rgb.par_chunks_mut(3).zip(&self.rgba).enumerate().for_each(|(i, (out, pixel))| {
+            out.copy_from_slice(&encoder.encode(shown(pixel), i % width, i / width));
+        });
         image
     }
 }

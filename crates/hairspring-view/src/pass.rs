@@ -6,7 +6,7 @@ use crate::{
     camera::View,
     frame::Before,
     hair::{color::Colors, ribbon::Setup, shade::LANES},
-    tonemap::{Encoder, filmic},
+    tonemap::{Encoder, filmic, filmic_on},
 };
 use glam::{Vec2, Vec3, Vec4};
 
@@ -30,6 +30,8 @@ pub(crate) trait Pass: Sync {
 /// Light, tone mapped to 8 bits of sRGB.
 pub(crate) struct Screen<'a> {
     pub encoder: &'a Encoder,
+    /// [`Background::plain`](crate::lighting::Background::plain).
+    pub plain: Option<Vec3>,
 }
 
 /// Linear light times coverage, and coverage.
@@ -59,8 +61,16 @@ impl Pass for Screen<'_> {
 
     #[inline(always)]
     fn pixel(&self, setup: &Setup, at: [usize; 2], blended: Vec4, wall: Vec3) -> [u8; 3] {
+        let wall = if self.plain.is_some() { Vec3::ZERO } else { wall };
         let light = blended.truncate() + setup.behind(wall, at, blended.w) * blended.w;
-        self.encoder.encode(filmic(light * setup.frame.lighting.exposure.exp2()), at[0], at[1])
+        let light = light * setup.frame.lighting.exposure.exp2();
+        let shown = match self.plain {
+            Some(plain) => {
+                filmic_on(plain, light, Vec3::ONE - setup.share_of_wall(at, blended.w) * blended.w)
+            }
+            None => filmic(light),
+        };
+        self.encoder.encode(shown, at[0], at[1])
     }
 }
 
@@ -80,11 +90,10 @@ impl Pass for Linear {
     fn pixel(&self, setup: &Setup, at: [usize; 2], blended: Vec4, wall: Vec3) -> Vec4 {
         let (behind, cover) = match self.transparent {
             false => (setup.behind(wall, at, blended.w), 1.0),
-            // The ground is linear in what is behind it: its own light, and the fraction that it lets through.
+            // The ground's own light, and the fraction that it lets through.
             true => {
-                let own = setup.behind(Vec3::ZERO, at, blended.w);
-                let through = setup.behind(Vec3::ONE, at, blended.w) - own;
-                (own, 1.0 - through.element_sum() / 3.0)
+                let through = setup.share_of_wall(at, blended.w);
+                (setup.behind(Vec3::ZERO, at, blended.w), 1.0 - through.element_sum() / 3.0)
             }
         };
         let light = blended.truncate() + behind * blended.w;

@@ -115,7 +115,8 @@ impl Renderer {
     fn draw_screen(&mut self, frame: &Frame, shadows: Shadows) -> &Image {
         let encoder = std::mem::take(&mut self.encoder);
         let mut tiles = std::mem::take(&mut self.drawn);
-        self.draw_tiles(&Screen { encoder: &encoder }, frame, shadows, &mut tiles);
+        let screen = Screen { encoder: &encoder, plain: frame.background.plain() };
+        self.draw_tiles(&screen, frame, shadows, &mut tiles);
         copy_rows(self.tiles, &tiles, self.image.rgb.as_chunks_mut().0);
         (self.encoder, self.drawn) = (encoder, tiles);
         &self.image

@@ -22,6 +22,14 @@ pub(crate) fn filmic(light: Vec3) -> Vec3 {
     (FILM_OUT * curve).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
+/// The color of a pixel that light, times the share `cover` of the pixel that it comes from, leaves open to a plain
+/// backdrop.
+#[inline(always)]
+pub(crate) fn filmic_on(plain: Vec3, light: Vec3, cover: Vec3) -> Vec3 {
+    let cover = cover.clamp(Vec3::ZERO, Vec3::ONE);
+    filmic(light / cover.max(Vec3::splat(1e-4))) * cover + plain * (Vec3::ONE - cover)
+}
+
 /// Table from linear to sRGB (IEC 61966-2-1), in 255ths, over the square root of the linear value.
 pub(crate) struct Encoder {
     table: Vec<f32>,

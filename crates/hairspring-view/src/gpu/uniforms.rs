@@ -70,6 +70,8 @@ pub(super) struct Uniforms {
     softness: f32,
     shade_low: [f32; 2],
     shade_high: [f32; 2],
+    plain: [f32; 3],
+    is_plain: f32,
 }
 
 /// The transform of the bodies' depth map, as in `DepthMap::fill`.
@@ -176,6 +178,8 @@ impl Uniforms {
             softness: shadow::softness(map.scale, grid.map_or(0.0, |g| g.voxel)),
             shade_low: floor.map_or([0.0; 2], |f| f.shade[0].to_array()),
             shade_high: floor.map_or([0.0; 2], |f| f.shade[1].to_array()),
+            plain: frame.background.plain().unwrap_or_default().to_array(),
+            is_plain: frame.background.plain().map_or(0.0, |_| 1.0),
         }
     }
 }

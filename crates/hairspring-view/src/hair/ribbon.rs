@@ -55,6 +55,16 @@ impl Setup<'_> {
             None => wall,
         }
     }
+
+    /// The share of the backdrop that the ground leaves in the pixel at column and row `at`: what it adds is linear in
+    /// what is behind it.
+    #[inline(always)]
+    pub fn share_of_wall(&self, at: [usize; 2], through: f32) -> Vec3 {
+        match self.floor {
+            Some(_) => self.behind(Vec3::ONE, at, through) - self.behind(Vec3::ZERO, at, through),
+            None => Vec3::ONE,
+        }
+    }
 }
 
 /// A segment in a tile, packed so that sorting by value sorts by depth: 16 bits for the depth at its middle,

@@ -30,11 +30,22 @@ fn develop(@builtin(position) at: vec4f) -> @location(0) vec4f {
     let surface = textureLoad(body, pixel, 0);
     let back = textureLoad(behind, pixel, 0);
     let place = corner / frame.size - vec2f(0.5, 0.42);
-    let wall = mix(frame.edge, frame.center, exp(-3.2 * place.x * place.x) * exp(-3.2 * place.y * place.y));
+    var wall = mix(frame.edge, frame.center, exp(-3.2 * place.x * place.x) * exp(-3.2 * place.y * place.y));
+    if frame.is_plain > 0.0 {
+        wall = vec3f(0.0);
+    }
     var light = back.xyz + over_ground(wall, at.xy) * (1.0 - back.w);
     light = surface.xyz + light * (1.0 - surface.w);
     light = front.xyz + light * (1.0 - front.w);
+    var shown = filmic(light * frame.gain);
+    if frame.is_plain > 0.0 {
+        // `tonemap::filmic_on`.
+        let through = (1.0 - back.w) * (1.0 - surface.w) * (1.0 - front.w);
+        let share = over_ground(vec3f(1.0), at.xy) - over_ground(vec3f(0.0), at.xy);
+        let cover = saturate(1.0 - share * through);
+        shown = filmic(light * frame.gain / max(cover, vec3f(1e-4))) * cover + frame.plain * (1.0 - cover);
+    }
     // `Encoder::encode`.
     let noise = fract(52.98292 * fract(0.06711056 * corner.x + 0.00583715 * corner.y));
-    return vec4f(floor(255.0 * encode(filmic(light * frame.gain)) + noise) / 255.0, 1.0);
+    return vec4f(floor(255.0 * encode(shown) + noise) / 255.0, 1.0);
 }

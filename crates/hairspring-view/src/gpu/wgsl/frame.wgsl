@@ -76,6 +76,10 @@ struct Frame {
     /// Box around all shadow of the key lamp, X and Z [m].
     shade_low: vec2f,
     shade_high: vec2f,
+    /// `Background::plain`.
+    plain: vec3f,
+    /// 1: the backdrop is plain.
+    is_plain: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
