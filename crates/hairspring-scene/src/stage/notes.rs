@@ -43,10 +43,15 @@ impl Stage {
             Some(requested) => format!(
                 "volume.cell = {requested} would need more cells than a grid can have; cells of {cell:.3} m are used"
             ),
-            None => format!(
-                "the hair is spread so far that the volume's grid would have more than two million cells; cells of \
-                 {cell:.3} m are used, in which hair acts on hair more coarsely"
-            ),
+            None => {
+                // Rounded up, so that a scene can ask for it.
+                let cell = (1e3 * cell).ceil() * 1e-3;
+                format!(
+                    "the volume's grid holds everything that strands can reach, and would have more than two million cells \
+                     of the size that suits their density; cells of {cell:.3} m are used, in which hair acts on hair more \
+                     coarsely; shorten the longest strands, or set volume.cell = {cell:.3} to accept it"
+                )
+            }
         })
     }
 }
@@ -54,7 +59,7 @@ impl Stage {
 #[cfg(test)]
 mod tests {
     use crate::{
-        Collider, InitialContact, Scene, Shape,
+        Collider, Guides, InitialContact, Scene, Shape,
         builtin::{BuiltinOptions, scene},
         stage::Stage,
     };
@@ -86,5 +91,21 @@ mod tests {
         assert!(notes(0.02).iter().all(|note| !note.contains("volume.cell")));
         let small = notes(1e-5);
         assert!(small.iter().any(|note| note.starts_with("volume.cell = 0.00001 would need")), "{small:?}");
+    }
+
+    #[test]
+    fn enlarged_cells_name_a_size_that_is_accepted() {
+        let head = scene(&BuiltinOptions { strands: 400, guides: Guides::All, ..BuiltinOptions::default() });
+        let notes = |cell: Option<f32>| {
+            let volume = Volume { method: VolumeMethod::Density, cell, ..Volume::default() };
+            Stage::new(Scene { volume, ..head.clone() }).unwrap().notes()
+        };
+        let (found, named) = notes(None)
+            .into_iter()
+            .find_map(|note| Some((note.clone(), note.split_once("set volume.cell = ")?.1.to_owned())))
+            .expect("the grid holds more than the strands at rest");
+        assert!(found.contains("everything that strands can reach"), "{found}");
+        let cell = named.split(' ').next().unwrap().parse().unwrap();
+        assert!(notes(Some(cell)).iter().all(|note| !note.contains("volume")), "{named}");
     }
 }

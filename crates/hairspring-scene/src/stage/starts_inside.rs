@@ -54,6 +54,12 @@ impl fmt::Display for StartsInside {
                 "; to push hair out before the scene begins, add `initial = \"push\"` to the [[collider]] or [[sheet]]"
             )?;
         }
+        if strands > 0 && !in_keeping && !in_pushing {
+            write!(
+                f,
+                "; move the groom out of the mesh, or give the body a [collision] mesh that the groom lies on"
+            )?;
+        }
         if in_pushing {
             write!(
                 f,
