@@ -2,16 +2,23 @@
 //! nor under a temporary one.
 //!
 //! By default a signal ends the program immediately. A command that keeps its finished frames calls [`finish_current`].
-//! After that call the first signal ends it after the current frame, and the second one ends it immediately.
+//! After that call the first signal ends it after the current frame, and the second one ends it immediately. Signals
+//! within [`ONE`] count as one: `timeout` and some job managers send one to the process and one to its group.
 
 use crate::console;
-use std::sync::{
-    Mutex, PoisonError,
-    atomic::{AtomicBool, Ordering},
+use std::{
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
+    time::{Duration, Instant},
 };
 
 /// Exit code of an interrupted run.
 pub const CODE: u8 = 130;
+
+/// Longest time between signals that count as one.
+const ONE: Duration = Duration::from_millis(200);
 
 static STOP_REQUESTED: AtomicBool = AtomicBool::new(false);
 
@@ -33,12 +40,17 @@ fn report_file_size_limit() {
 pub fn install_handler(quiet: bool) {
     report_file_size_limit();
     // If the system has no such signal, the run can only be killed.
+    let mut first: Option<Instant> = None;
     let _ = ctrlc::set_handler(move || {
         // The lock is held until the exit, so that the run does not begin to write frames meanwhile.
         let current = CURRENT.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(what) = *current
-            && !STOP_REQUESTED.swap(true, Ordering::Relaxed)
+            && first.is_none_or(|at| at.elapsed() < ONE)
         {
+            first.get_or_insert_with(Instant::now);
+            if STOP_REQUESTED.swap(true, Ordering::Relaxed) {
+                return;
+            }
             if !quiet {
                 console::note(format_args!("stopping after {what}; a second interrupt stops immediately"));
             }

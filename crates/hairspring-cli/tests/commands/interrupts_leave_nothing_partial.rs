@@ -128,6 +128,24 @@ fn a_second_signal_ends_a_long_frame_immediately() {
     assert!(ended, "the second signal never met a frame");
 }
 
+/// `timeout` sends a signal to the program and one to its group.
+#[test]
+fn two_signals_at_once_count_as_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 6000);
+    let arguments =
+        ["bake", "groom.hair", "-o", "x.#.hair", "--guides", "all", "--substeps", "1024", "--fps", "1"];
+    let child = start(f, &arguments);
+    wait_for(&f.join("x.1.hair"));
+    let id = child.id().to_string();
+    let both = "kill -TERM $0; sleep 0.02; kill -TERM $0";
+    assert!(Command::new("sh").args(["-c", both, &id]).status().unwrap().success());
+    let stderr = ended(child);
+    assert!(stderr.contains("stopped after frame"), "{stderr}");
+    no_temporary(f);
+}
+
 /// Sends two signals to a bake of long frames, the first after frame 1, and returns what it prints after the first.
 fn two_signals() -> String {
     let folder = tempfile::tempdir().unwrap();
@@ -145,6 +163,8 @@ fn two_signals() -> String {
         line.clear();
         assert!(stderr.read_line(&mut line).unwrap() > 0, "the first signal was not reported");
     }
+    // Signals within 0.2 s count as one.
+    std::thread::sleep(Duration::from_millis(300));
     signal(&child, "INT");
     ended(child);
     let mut rest = String::new();
