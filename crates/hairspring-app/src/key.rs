@@ -1,6 +1,7 @@
 //! Keys of values in a scene file, such as `groom[0].look.roughness`, and writing at them without touching
 //! the rest of the text.
 
+use hairspring::material::preset;
 use std::{fmt, str::FromStr};
 use toml_edit::{Item, Table, TableLike, Value};
 
@@ -100,10 +101,23 @@ impl Key {
     }
 
     /// Writes `value` at this key, or removes the field if it is `None`, so that its default applies. Missing
-    /// tables on the path are created. Returns false and writes nothing if the path does not exist and cannot
-    /// be created.
+    /// tables on the path are created. A material that takes the name of a preset is based on it, so that only this
+    /// field differs from what the name meant before. Returns false and writes nothing if the path does not exist and
+    /// cannot be created.
     pub(crate) fn write(&self, table: &mut dyn TableLike, value: Option<Value>) -> bool {
+        if value.is_some()
+            && let Some(name) = self.hides_preset(table)
+        {
+            write(table, &Self::top("material").entry(name).field("preset").0, Some(name.into()));
+        }
         write(table, &self.0, value)
+    }
+
+    /// The name of the preset that a new material at this key would hide.
+    fn hides_preset(&self, table: &dyn TableLike) -> Option<&str> {
+        let name = self.material().filter(|name| self.0.len() > 2 && preset(name).is_some())?;
+        let defined = table.get("material").and_then(|materials| materials.get(name)).is_some();
+        (!defined).then_some(name)
     }
 }
 
@@ -141,7 +155,10 @@ fn write(table: &mut dyn TableLike, steps: &[Step], value: Option<Value>) -> boo
                 if value.is_none() {
                     return true;
                 }
-                table.insert(name, Item::Table(Table::new()));
+                // Its header is written only if it holds values.
+                let mut missing = Table::new();
+                missing.set_implicit(true);
+                table.insert(name, Item::Table(missing));
             }
             table.get_mut(name).and_then(Item::as_table_like_mut).is_some_and(|t| write(t, rest, value))
         }
@@ -268,6 +285,19 @@ mod tests {
         assert_eq!(after, "[[groom]]\nfile = \"a.hair\"\n\n[groom.look]\nroughness = 0.5\n");
         let after = written("", "wind.velocity", Some(Value::from_iter([1.0, 0.0, 0.0]))).unwrap();
         assert_eq!(after, "[wind]\nvelocity = [1.0, 0.0, 0.0]\n");
+    }
+
+    #[test]
+    fn a_new_material_with_the_name_of_a_preset_is_based_on_it() {
+        let scene = "[[groom]]\nmaterial = \"wavy\"\n";
+        let after = written(scene, "material.wavy.bend", Some(7.into())).unwrap();
+        assert_eq!(after, format!("{scene}\n[material.wavy]\npreset = \"wavy\"\nbend = 7\n"));
+        assert_eq!(written(&after, "material.wavy.bend", Some(7.into())).unwrap(), after);
+        let chosen = written(scene, "material.wavy.preset", Some("curly".into())).unwrap();
+        assert_eq!(chosen, format!("{scene}\n[material.wavy]\npreset = \"curly\"\n"));
+        let own = written(scene, "material.mine.bend", Some(7.into())).unwrap();
+        assert_eq!(own, format!("{scene}\n[material.mine]\nbend = 7\n"));
+        assert_eq!(written(scene, "material.wavy.bend", None).unwrap(), scene);
     }
 
     #[test]
