@@ -2,7 +2,13 @@
 //! its own, as `hairspring bake` does. Its manifest is the same, so that `hairspring bake --resume` continues a bake
 //! of the window if the scene is saved as it was baked.
 
-use crate::{AppError, destination::destination, document::Source, snapshot::StageSnapshot, text::counted};
+use crate::{
+    AppError,
+    destination::{check_single, destination},
+    document::Source,
+    snapshot::StageSnapshot,
+    text::counted,
+};
 use hairspring_io::{Format, FrameError, FrameWriter, Manifest, Origin};
 use hairspring_scene::stage::{FrameRate, Stage};
 use hairspring_view::sequence_path;
@@ -167,6 +173,7 @@ fn run(
 /// Returns an error if the extension is that of no groom, or if the file cannot be written.
 pub fn export(path: &Path, stage: &StageSnapshot) -> Result<String, AppError> {
     let path = groom_path(path)?;
+    check_single(&path)?;
     let (mut writer, mut notes) =
         FrameWriter::new(&path, stage.still.grooms.iter().map(|groom| groom.strands())).map_err(failed)?;
     writer.write(&path, stage.time, stage.points()).map_err(failed)?;

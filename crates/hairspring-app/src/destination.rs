@@ -1,6 +1,7 @@
 //! Paths of files to be written: resolves the folder, and reports a missing one.
 
 use crate::AppError;
+use hairspring_view::sequence_path;
 use std::{
     io::ErrorKind,
     path::{Path, PathBuf},
@@ -29,6 +30,20 @@ pub fn destination(path: &Path) -> Result<PathBuf, AppError> {
             name.display(),
             folder.display()
         ))),
+    }
+}
+
+/// Refuses `#` signs in the name of an only file: they represent the number of a frame elsewhere.
+///
+/// # Errors
+/// Returns an error that names the file.
+pub fn check_single(path: &Path) -> Result<(), AppError> {
+    match sequence_path(path, 1) {
+        Some(_) => Err(AppError::new(format!(
+            "{}: this writes one file, not one for each frame; leave out the # signs",
+            path.display()
+        ))),
+        None => Ok(()),
     }
 }
 

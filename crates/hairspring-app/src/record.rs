@@ -3,7 +3,7 @@
 
 use crate::{
     AppError,
-    destination::destination,
+    destination::{check_single, destination},
     orbit::Orbit,
     player,
     session::{Action, Session},
@@ -322,6 +322,9 @@ impl Sink {
         let wrong = |expected: &str| {
             Err(AppError::new(format!("{}: {expected} was expected; choose another name", path.display())))
         };
+        if request.kind != Kind::Pictures {
+            check_single(&path)?;
+        }
         let clip = match (request.kind, extension.as_str()) {
             (Kind::Still, "png" | "jpg") => None,
             (Kind::Still, _) => return wrong("a .png or .jpg"),

@@ -4,7 +4,7 @@
 //! lock is free was left by a window that ended before the user decided about the changes.
 
 use crate::{AppError, document::Document};
-use hairspring_io::atomically;
+use hairspring_io::{atomically, text_of};
 use serde::{Deserialize, Serialize};
 use std::{
     fs::File,
@@ -66,7 +66,7 @@ fn left_by_a_crash(file: &Path) -> Option<FoundScene> {
     if file.extension()? != "toml" || is_locked(&file.with_extension("lock")) {
         return None;
     }
-    let scene = toml::from_str(&std::fs::read_to_string(file).ok()?).ok()?;
+    let scene = toml::from_str(&text_of(file).ok()?).ok()?;
     let age = file.metadata().ok()?.modified().ok().and_then(|at| SystemTime::now().duration_since(at).ok());
     Some(FoundScene { scene, age: age.unwrap_or_default(), file: file.to_owned() })
 }

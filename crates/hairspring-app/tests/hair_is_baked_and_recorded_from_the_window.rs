@@ -88,7 +88,8 @@ fn bakes_and_exports_that_cannot_be_written_are_refused() {
         ("bake no/hair.##.hair 5", "no"),
         ("bake hair.##.png 5", ".tfx"),
         ("export hair.png", ".tfx"),
-        ("size 5 5\nstill a.png", "5 × 5"),
+        ("still a.##.png", "leave out the # signs"),
+        ("export a.##.hair", "leave out the # signs"),
     ] {
         let mut window = window(folder.path(), SMALL, &format!("pause\nwait 1\n{line}"));
         assert!(until(&mut window, |app| app.is_idle()));
@@ -114,7 +115,7 @@ fn files_of_the_scene_are_not_replaced() {
             let mut window = window(folder.path(), scene, &script);
             assert!(until(&mut window, |app| app.is_idle()));
             let (message, wrong) = window.state().message().expect("there is no message");
-            assert!(wrong && message.contains("few.hair is a file of the scene"), "{line}: {message}");
+            assert!(wrong && message.contains("few.hair is an input file"), "{line}: {message}");
             assert_eq!(window.state().script_errors(), 1, "{line}");
         }
     }

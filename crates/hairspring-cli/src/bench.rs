@@ -4,9 +4,9 @@ mod scene;
 mod table;
 
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
-    totals::grouped,
+    totals::{counted, grouped},
 };
 use clap::Parser;
 use glam::Vec3;
@@ -229,7 +229,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let bytes = simulation.bytes() as f64 / simulation.point_count() as f64;
     let simd = simulation.instruction_set();
     if options.json {
-        print_line(json!({
+        print_json(&json!({
             "device": options.device,
             "threads": threads,
             "strands": strands,
@@ -276,8 +276,12 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     print_scene(options);
     print_line(format_args!(
-        "on       {}, {threads} threads, {simd}, {}, {substeps} substeps, {frames} frames of 1/60 s",
-        options.device, options.integrator
+        "on       {}, {}, {simd}, {}, {}, {} of 1/60 s",
+        options.device,
+        counted(threads, "thread"),
+        options.integrator,
+        counted(substeps as usize, "substep"),
+        counted(frames as usize, "frame")
     ));
     print_line(format_args!(
         "time     {median:.2} ms per frame (median), {fastest:.2} ms (fastest), {p95:.2} ms (95 %)"

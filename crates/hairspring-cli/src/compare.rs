@@ -63,7 +63,7 @@ pub struct Options {
     seconds: Option<f32>,
 
     /// Frames per second [default: 30]
-    #[arg(long, value_name = "RATE", value_parser = frames::rate, conflicts_with = "methods")]
+    #[arg(long, value_name = "RATE", value_parser = FrameRate::of_output, conflicts_with = "methods")]
     fps: Option<FrameRate>,
 
     /// Width and height of the two pictures together [pixels] [default: 1280x720]

@@ -2,7 +2,7 @@
 
 use crate::{args::ProgressForm, fault::Fault};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use serde_json::json;
+use serde_json::{Value, json};
 use std::{
     fmt::Display,
     io::{self, IsTerminal, Write, stderr, stdout},
@@ -20,18 +20,22 @@ pub struct Console {
 /// The first error of standard output.
 static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
 
-/// The text with control characters escaped, except line ends: names in a scene file must not control the terminal.
-fn printable(text: &impl Display) -> String {
-    let text = text.to_string();
-    let controls = |c: char| c.is_control() && c != '\n' && c != '\t';
-    if !text.contains(controls) {
+/// The text on one line: a name or a path in it must neither control the terminal nor begin a line that a program
+/// takes for one of ours.
+fn one_line(text: &impl Display) -> String {
+    hairspring_io::printable(&text.to_string()).into_owned()
+}
+
+/// The text of JSON on one line. Hidden characters are in strings only, where JSON has escapes for them.
+fn json_line(value: &Value) -> String {
+    let text = value.to_string();
+    if !text.contains(hairspring_io::is_hidden) {
         return text;
     }
     text.chars().fold(String::new(), |mut shown, c| {
-        if controls(c) {
-            shown.extend(c.escape_default())
-        } else {
-            shown.push(c)
+        match hairspring_io::is_hidden(c) {
+            true => shown += &format!("\\u{:04x}", u32::from(c)),
+            false => shown.push(c),
         }
         shown
     })
@@ -40,9 +44,18 @@ fn printable(text: &impl Display) -> String {
 /// Prints a line of the result. After an error (a closed pipe, a full disk) nothing more is printed;
 /// [`finish`] returns the error, so that a command still completes its files.
 pub fn print_line(line: impl Display) {
+    print(&one_line(&line));
+}
+
+/// Prints the result as JSON, as [`print_line`] does.
+pub fn print_json(value: &Value) {
+    print(&json_line(value));
+}
+
+fn print(line: &str) {
     let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
     if unprinted.is_none() {
-        *unprinted = writeln!(stdout(), "{}", printable(&line)).err();
+        *unprinted = writeln!(stdout(), "{line}").err();
     }
 }
 
@@ -63,17 +76,17 @@ pub fn unprinted(why: io::Error) -> Fault {
 
 /// Prints a note that does not depend on the settings of the console.
 pub fn note(line: impl Display) {
-    let _ = writeln!(stderr(), "note: {}", printable(&line));
+    let _ = writeln!(stderr(), "note: {}", one_line(&line));
 }
 
 /// Prints an event of `--progress json`.
-fn event(event: &serde_json::Value) {
-    let _ = writeln!(stderr(), "{event}");
+fn event(event: &Value) {
+    let _ = writeln!(stderr(), "{}", json_line(event));
 }
 
 /// Prints a line about an error.
 pub fn print_error(line: &impl Display) {
-    let _ = writeln!(stderr(), "error: {}", printable(line));
+    let _ = writeln!(stderr(), "error: {}", one_line(line));
 }
 
 impl Console {
@@ -99,7 +112,7 @@ impl Console {
     /// Prints what the program is doing, if it takes a moment.
     pub fn doing(self, line: impl Display) {
         if !self.quiet {
-            let _ = writeln!(stderr(), "{}", printable(&line));
+            let _ = writeln!(stderr(), "{}", one_line(&line));
         }
     }
 
@@ -186,6 +199,11 @@ mod tests {
 
     #[test]
     fn names_do_not_control_the_terminal() {
-        assert_eq!(printable(&"a\u{1b}[31mb\n\tc"), "a\\u{1b}[31mb\n\tc");
+        let name = "a\u{1b}[31mb\nopenjd_fail: c\u{202e}d\u{9b}";
+        let line = one_line(&name);
+        assert_eq!(line, "a\\u{1b}[31mb\\nopenjd_fail: c\\u{202e}d\\u{9b}");
+        let json = json_line(&json!({ name: name }));
+        assert!(!json.contains(hairspring_io::is_hidden), "{json}");
+        assert_eq!(serde_json::from_str::<Value>(&json).unwrap(), json!({ name: name }));
     }
 }

@@ -5,10 +5,10 @@ use crate::{
     fault::Fault,
     input::{Units, print_notes},
     output,
-    totals::grouped,
+    totals::counted,
 };
 use clap::Parser;
-use hairspring_io::{Format, read_groom, write_groom};
+use hairspring_io::{Format, Inputs, read_groom, write_groom};
 use std::path::PathBuf;
 
 /// Converts a groom between the formats .hair, .tfx and .data; the file extension selects the format. Grooms are also read
@@ -44,8 +44,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         let text = format!("{}: unknown extension; a groom is written as .hair, .tfx or .data", to.display());
         return Err(Fault::Usage(text));
     }
+    output::check_single(to)?;
     output::try_folder(to)?;
-    let mut loaded = read_groom(from, &(*units).into()).map_err(|e| Fault::reading(e, from))?;
+    let (loaded, files) = Inputs::record(from, || read_groom(from, &(*units).into()));
+    let mut loaded = loaded.map_err(|e| Fault::reading(e, from))?;
+    output::keep_inputs(&files, from, [to.clone()])?;
     print_notes(&loaded.notes, console);
     if units.reverse {
         loaded.value.reverse();
@@ -53,10 +56,10 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let lost = write_groom(to, &loaded.value).map_err(Fault::writing_groom)?;
     lost.iter().for_each(|l| console.note(l));
     print_line(format_args!(
-        "wrote    {} ({} strands, {} points)",
+        "wrote    {} ({}, {})",
         to.display(),
-        grouped(loaded.value.strand_count()),
-        grouped(loaded.value.point_count())
+        counted(loaded.value.strand_count(), "strand"),
+        counted(loaded.value.point_count(), "point")
     ));
     Ok(())
 }

@@ -2,7 +2,7 @@
 //! and a still.
 
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
     film::Sink,
     frames, output,
@@ -54,7 +54,7 @@ pub struct Options {
     seconds: f32,
 
     /// Frames per second
-    #[arg(long, value_name = "RATE", default_value = "24", value_parser = frames::rate)]
+    #[arg(long, value_name = "RATE", default_value = "24", value_parser = FrameRate::of_output)]
     fps: FrameRate,
 
     #[command(flatten)]
@@ -111,7 +111,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "fps": options.fps.hertz(),
             "size": [width, height],
         });
-        print_line(totals.json(&stage, summary));
+        print_json(&totals.json(&stage, summary));
     } else {
         print_line(format_args!(
             "clip     {} ({frames} frames, {width}x{height}, {} per second)",

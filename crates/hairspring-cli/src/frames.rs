@@ -55,21 +55,16 @@ pub fn size(text: &str) -> Result<(u32, u32), String> {
         .ok_or_else(|| "expected width x height in pixels, each 1 to 16384, such as 1280x720".into())
 }
 
-/// Parses a number of frames per second, 1 to 240.
-pub fn rate(text: &str) -> Result<FrameRate, String> {
-    let rate = text.parse::<FrameRate>().ok().filter(|rate| (1.0..=240.0).contains(&rate.hertz()));
-    rate.ok_or_else(|| {
-        "expected a number or a fraction from 1 to 240, such as 30, 23.976 or 24000/1001".into()
-    })
-}
-
 /// Parses which strands are simulated: `all`, `file` or a number.
 pub fn guides(text: &str) -> Result<Guides, String> {
     match text {
         "all" => Ok(Guides::All),
         "file" => Ok(Guides::FromGroom),
         _ => text.parse().ok().filter(|n| *n > 0).map(Guides::Count).ok_or_else(|| {
-            "expected a number above 0, `all`, or `file` for the guides that the groom names".into()
+            format!(
+                "expected a number from 1 to {}, `all`, or `file` for the guides that the groom names",
+                u32::MAX
+            )
         }),
     }
 }
@@ -131,12 +126,14 @@ mod tests {
         }
         assert_eq!(size("1280x720"), Ok((1280, 720)));
         assert!(["", "12", "0x5", "5x0", "1x99999", "axb"].iter().all(|t| size(t).is_err()));
-        assert!(["0", "nan", "inf", "-1", "241"].iter().all(|t| rate(t).is_err()));
+        assert!(["0", "nan", "inf", "-1", "241"].iter().all(|t| FrameRate::of_output(t).is_err()));
     }
 
     #[test]
     fn a_motion_is_played_to_its_last_moment() {
-        let whole = |motion: Option<f64>, fps: &str| FrameRange::whole(motion, rate(fps).unwrap()).last;
+        let whole = |motion: Option<f64>, fps: &str| {
+            FrameRange::whole(motion, FrameRate::of_output(fps).unwrap()).last
+        };
         assert_eq!(whole(Some(300.0 / 60.0), "30"), 151);
         assert_eq!(whole(Some(342.0 / 120.0), "30"), 86);
         assert_eq!(whole(None, "24"), 120);

@@ -1,7 +1,7 @@
 //! `hairspring info`: describes the content of a file.
 
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
     input::{Units, print_notes},
     totals::grouped,
@@ -13,7 +13,7 @@ use hairspring::{
     groom::{Groom, Repairs},
 };
 use hairspring_io::{
-    ErrorKind, Format, Motion, ReadOptions, SkinDistance, pc2, read_body, read_bones, read_groom,
+    ErrorKind, Format, Motion, ReadOptions, SkinDistance, bytes_of, pc2, read_body, read_bones, read_groom,
     read_motion, read_scene,
 };
 use hairspring_scene::{Guides, Scene};
@@ -95,8 +95,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         }
         Format::Usd | Format::Alembic => external(path, &units, console)?,
         Format::Pc2 => {
-            let data =
-                std::fs::read(path).map_err(|e| Fault::Unreadable(format!("{}: {e}", path.display())))?;
+            let data = bytes_of(path).map_err(wrong)?;
             let cache = pc2::parse(&data).map_err(|p| wrong(p.in_file(path)))?;
             json!({
                 "samples": cache.samples.len(),
@@ -146,7 +145,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         all.append(found);
     }
     match options.json {
-        true => print_line(&all),
+        true => print_json(&all),
         false => lines(path, &all),
     }
     Ok(())
@@ -156,13 +155,14 @@ fn groom(groom: &Groom, repairs: &Repairs) -> Value {
     let counts = || (0..groom.strand_count()).map(|s| groom.range(s).len());
     let mut lengths: Vec<f32> = (0..groom.strand_count()).map(|s| groom.strand_length(s)).collect();
     lengths.sort_by(f32::total_cmp);
-    let at = |i: usize| lengths.get(i).copied().unwrap_or(0.0);
+    let middle = lengths.get(lengths.len() / 2);
+    let length = middle.map(|middle| [lengths[0], *middle, lengths[lengths.len() - 1]]);
     json!({
         "strands": groom.strand_count(),
         "points": groom.point_count(),
         "points_min": counts().min(),
         "points_max": counts().max(),
-        "length_m": [at(0), at(lengths.len() / 2), at(lengths.len().saturating_sub(1))],
+        "length_m": length,
         "bounds_m": bounds(groom.bounds()),
         "repaired": repairs.total(),
         "groups": groom.groups.iter().max().map_or(1, |g| u32::from(*g) + 1),

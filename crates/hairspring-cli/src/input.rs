@@ -3,7 +3,9 @@
 use crate::{console::Console, fault::Fault, frames};
 use clap::{Args, ValueEnum};
 use glam::Vec3;
-use hairspring_io::{Axis, ErrorKind, Format, Inputs, ReadOptions, read_body, read_groom, read_scene};
+use hairspring_io::{
+    Axis, ErrorKind, Format, Inputs, ReadOptions, printable, read_body, read_groom, read_scene,
+};
 use hairspring_scene::{Guides, Scene, SceneGroom};
 use std::path::{Path, PathBuf};
 
@@ -169,7 +171,7 @@ pub fn unknown_extension(path: &Path) -> Fault {
 /// A scene with only a groom: fixed roots and gravity.
 fn alone(path: &Path, groom: hairspring::groom::Groom) -> Scene {
     Scene {
-        name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+        name: printable(&path.file_stem().unwrap_or_default().to_string_lossy()).into_owned(),
         grooms: vec![SceneGroom { groom, ..SceneGroom::default() }],
         gravity: Vec3::new(0.0, -9.81, 0.0),
         ..Scene::default()

@@ -42,9 +42,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     fault::report_panics();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let outcome = std::panic::catch_unwind(|| {
-        let cli = match Cli::try_parse_from(arguments) {
+        let cli = match Cli::try_parse_from(&arguments) {
             Ok(cli) => cli,
-            Err(refused) => return explain(&refused),
+            // It quotes arguments as they are.
+            Err(refused) => {
+                return explain(&Cli::try_parse_from(one_line_each(&arguments)).err().unwrap_or(refused));
+            }
         };
         run_command(cli)?;
         console::finish().map(|()| 0)
@@ -58,6 +61,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         // The panic hook has already printed the error.
         Err(_) => fault::PANICKED,
     }
+}
+
+/// The arguments without characters that control a terminal or begin a new line.
+fn one_line_each(arguments: &[OsString]) -> impl Iterator<Item = OsString> {
+    let shown = |text: &str| OsString::from(&*hairspring_io::printable(text));
+    arguments.iter().map(move |argument| argument.to_str().map_or_else(|| argument.clone(), shown))
 }
 
 /// Prints the help, the version, or what is wrong with the command line.

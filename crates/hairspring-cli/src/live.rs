@@ -3,7 +3,7 @@
 use crate::{console::Console, demo, fault::Fault};
 use clap::{Parser, ValueEnum};
 use hairspring_app::{Document, Drawn, Ended, RunError, Script, recovery_folder};
-use hairspring_io::Format;
+use hairspring_io::{Format, check_file, text_of};
 use std::path::{Path, PathBuf};
 
 /// Opens a window where hair can be viewed, touched and tuned while it moves.
@@ -50,8 +50,7 @@ pub fn run(options: &Options) -> Result<(), Fault> {
     let recovery = if options.script.is_some() { None } else { recovery_folder() };
     let script = match &options.script {
         Some(path) => {
-            let text = std::fs::read_to_string(path)
-                .map_err(|why| Fault::Unreadable(format!("{} could not be read: {why}", path.display())))?;
+            let text = text_of(path).map_err(|why| Fault::reading(why, path))?;
             Script::parse(&path.display().to_string(), &text).map_err(|why| Fault::Usage(why.to_string()))?
         }
         None => Default::default(),
@@ -85,9 +84,7 @@ pub fn run(options: &Options) -> Result<(), Fault> {
 
 /// Opens a file of any kind as a scene.
 fn open(path: &Path) -> Result<Document, Fault> {
-    if let Err(why) = std::fs::File::open(path) {
-        return Err(Fault::Unreadable(format!("{} could not be read: {why}", path.display())));
-    }
+    check_file(path).map_err(|why| Fault::reading(why, path))?;
     let wrong = |why: hairspring_app::AppError| match Format::of(path) {
         Some(Format::TfxBone) | None => Fault::Usage(why.to_string()),
         Some(_) => Fault::Content(why.to_string()),

@@ -24,7 +24,10 @@ pub fn extension(path: &Path) -> String {
 pub fn try_folder(path: &Path) -> Result<(), Fault> {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
-        let text = format!("the folder {} does not exist; create it first", folder.display());
+        let text = match folder.exists() {
+            true => format!("{} is a file and not a folder; choose another name", folder.display()),
+            false => format!("the folder {} does not exist; create it first", folder.display()),
+        };
         return Err(Fault::Unwritable(text));
     }
     if path.is_dir() {
@@ -35,6 +38,17 @@ pub fn try_folder(path: &Path) -> Result<(), Fault> {
     tempfile::tempfile_in(folder).map(drop).map_err(|e| {
         Fault::Unwritable(format!("cannot write to the folder {}: {e}; choose another", folder.display()))
     })
+}
+
+/// Refuses `#` signs in the name of a command's only file: they represent the number of a frame elsewhere.
+pub fn check_single(path: &Path) -> Result<(), Fault> {
+    match is_sequence(path) {
+        true => Err(Fault::Usage(format!(
+            "{}: this command writes one file, not one for each frame; leave out the # signs",
+            path.display()
+        ))),
+        false => Ok(()),
+    }
 }
 
 /// Checks the name and the folder of a report. A name of another kind is likely to be that of a scene.

@@ -1,10 +1,10 @@
 //! `hairspring render`: draws a scene or a groom.
 
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
     film::{Film, Sink},
-    frames::{self, FrameRange},
+    frames::FrameRange,
     input::Input,
     interrupt, output,
     picture::{Setup, Studio, View},
@@ -49,7 +49,7 @@ pub struct Options {
     frames: Option<FrameRange>,
 
     /// Frames per second
-    #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
+    #[arg(long, value_name = "RATE", default_value = "30", value_parser = FrameRate::of_output)]
     fps: FrameRate,
 
     #[command(flatten)]
@@ -137,7 +137,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "fps": options.fps.hertz(),
             "size": [options.view.size.0, options.view.size.1],
         });
-        print_line(totals.json(&stage, summary));
+        print_json(&totals.json(&stage, summary));
     } else {
         let skipped = match range.count() as usize - wanted.len() {
             0 => String::new(),

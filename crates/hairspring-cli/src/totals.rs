@@ -97,7 +97,7 @@ impl Totals {
         let (guides, strands) = stage.simulated_strands();
         let (guide_points, points) = stage.simulated_points();
         let ran = match guides == strands {
-            true => format!("{} hairs of {} points, all simulated", grouped(strands), grouped(points)),
+            true => format!("{} of {}, all simulated", counted(strands, "hair"), counted(points, "point")),
             false => format!(
                 "{} hairs of {} points follow {} simulated guides of {} points",
                 grouped(strands),
@@ -109,11 +109,11 @@ impl Totals {
         print_line(format_args!("ran      {ran}"));
         let substeps = match self.substeps {
             0 => "no substeps".into(),
-            n => format!("{n} substeps per frame"),
+            n => format!("{} per frame", counted(n as usize, "substep")),
         };
         print_line(format_args!(
-            "on       {} threads, {}, {substeps}",
-            rayon::current_num_threads(),
+            "on       {}, {}, {substeps}",
+            counted(rayon::current_num_threads(), "thread"),
             stage.instruction_set()
         ));
         let start = stage.start();
@@ -131,9 +131,9 @@ impl Totals {
         }
         if start.held_back > 0 {
             print_line(format_args!(
-                "start    {} softer than specified, the most that is stable at {} substeps; use more substeps",
+                "start    {} softer than specified, the most that is stable at {}; use more substeps",
                 joints(start.held_back),
-                stage.scene().solver.substeps
+                counted(stage.scene().solver.substeps as usize, "substep")
             ));
         }
         let neighbours = stage.neighbours().unwrap_or_default();
@@ -156,10 +156,10 @@ impl Totals {
         }
         let contact = stage.measure();
         print_line(format_args!(
-            "contact  {} points inside at the end, at most {:.3} mm deep; {} segments deeper than 1 mm, at most {:.3} mm deep ({:.3} mm in the meshes)",
-            grouped(contact.inside_points),
+            "contact  {} inside at the end, at most {:.3} mm deep; {} deeper than 1 mm, at most {:.3} mm deep ({:.3} mm in the meshes)",
+            counted(contact.inside_points, "point"),
             contact.depth_inside() * 1e3,
-            grouped(contact.deep_segments),
+            counted(contact.deep_segments, "segment"),
             contact.segment_depth * 1e3,
             contact.surface_depth * 1e3
         ));
@@ -179,8 +179,8 @@ impl Totals {
         }
         if self.reset_strands > 0 {
             print_line(format_args!(
-                "reset    {} resets of strands that became non-finite",
-                self.reset_strands
+                "reset    {} of strands that became non-finite",
+                counted(self.reset_strands, "reset")
             ));
         }
         print_line(format_args!("took     {:.1} s", self.began.elapsed().as_secs_f64()));
@@ -237,7 +237,12 @@ fn joints(n: usize) -> String {
 
 /// `1 frame`, `2 frames`.
 pub fn frames(n: usize) -> String {
-    format!("{} frame{}", grouped(n), if n == 1 { "" } else { "s" })
+    counted(n, "frame")
+}
+
+/// A number of things, in the plural unless it is one.
+pub fn counted(n: usize, noun: &str) -> String {
+    format!("{} {noun}{}", grouped(n), if n == 1 { "" } else { "s" })
 }
 
 /// A number with commas between thousands.

@@ -4,10 +4,11 @@ mod report;
 mod table;
 
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
     interrupt, output,
     report::number,
+    totals::counted,
 };
 use clap::Parser;
 use hairspring::{material::Model, settings::Integrator};
@@ -165,7 +166,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let outcomes: Vec<Outcome> =
         jobs.par_iter().flat_map_iter(|job| job.case.run(&job.values, job.method)).collect();
     if options.json {
-        print_line(Value::Array(outcomes.iter().map(as_json).collect()));
+        print_json(&Value::Array(outcomes.iter().map(as_json).collect()));
     } else {
         print_table(&outcomes);
     }
@@ -359,7 +360,10 @@ fn row(outcome: &Outcome) -> [String; 7] {
 fn how(outcome: &Outcome) -> String {
     let Method { points, substeps, model, integrator } = outcome.method;
     let (model, integrator) = (model.name(), integrator.name());
-    format!("{points} points, {substeps} substeps per frame, model {model}, {integrator}")
+    format!(
+        "{points} points, {} per frame, model {model}, {integrator}",
+        counted(substeps as usize, "substep")
+    )
 }
 
 /// The parameters of an outcome, as on the command line.

@@ -92,13 +92,12 @@ pub(crate) fn with_room<T>(count: usize) -> Result<Vec<T>, Problem> {
     Ok(values)
 }
 
-/// Reads a regular file of at most `limit` bytes; `None` if it is longer. The limit applies to the bytes that
-/// are read, because the size of some files (in `/proc`, or growing ones) is not in their metadata.
+/// Opens a regular file, and returns its size [bytes].
 ///
 /// # Errors
-/// Returns an error if the file cannot be opened or read, or is no regular file: a pipe would wait for a
-/// writer, and a device has no end.
-pub(crate) fn read_regular(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
+/// Returns an error if the file cannot be opened, or is no regular file: a pipe would wait for a writer, and a
+/// device has no end.
+pub(crate) fn open_regular(path: &Path) -> io::Result<(File, u64)> {
     let regular = |found: Metadata| match (found.is_file(), found.is_dir()) {
         (true, _) => Ok(found.len()),
         (_, true) => Err(io::Error::other("it is a folder; name a file in it")),
@@ -109,6 +108,16 @@ pub(crate) fn read_regular(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>
     regular(std::fs::metadata(path)?)?;
     let file = File::open(path)?;
     let size = regular(file.metadata()?)?;
+    Ok((file, size))
+}
+
+/// Reads a regular file of at most `limit` bytes; `None` if it is longer. The limit applies to the bytes that
+/// are read, because the size of some files (in `/proc`, or growing ones) is not in their metadata.
+///
+/// # Errors
+/// Returns an error if the file cannot be read; see [`open_regular`].
+pub(crate) fn read_regular(path: &Path, limit: u64) -> io::Result<Option<Vec<u8>>> {
+    let (file, size) = open_regular(path)?;
     if size > limit {
         return Ok(None);
     }

@@ -81,7 +81,7 @@ impl Inputs {
             outputs.into_iter().find(|path| path.canonicalize().is_ok_and(|path| inputs.contains(&path)));
         match replaced {
             Some(path) => Err(format!(
-                "{} is a file of the scene and would be replaced; choose another name for the output",
+                "{} is an input file and would be replaced; choose another name for the output",
                 path.display()
             )),
             None => Ok(()),
@@ -134,7 +134,7 @@ mod tests {
         std::fs::create_dir(folder.path().join("no")).unwrap();
         for output in [&groom, &around] {
             let why = keep(&[&new, output]).unwrap_err();
-            assert!(why.contains("a.hair is a file of the scene"), "{why}");
+            assert!(why.contains("a.hair is an input file"), "{why}");
         }
     }
 

@@ -57,7 +57,10 @@ pub use external::{
 pub use frame_writer::{FrameError, FrameWriter};
 pub use gltf::Character;
 pub use inputs::Inputs;
-pub use load::{Format, Loaded, holds_only_curves, read_body, read_bones, read_groom, read_motion};
+pub use load::{
+    Format, Loaded, bytes_of, check_file, holds_only_curves, read_body, read_bones, read_groom, read_motion,
+    text_of,
+};
 pub use manifest::{Manifest, ManifestError, Origin};
 pub use motion::Motion;
 pub use observe::observe_files;
@@ -65,4 +68,5 @@ pub use save::{atomically, write_groom, write_strands};
 pub use scene::{read_scene, read_scene_text, read_settings, same_geometry, scene_text};
 pub use skin_distance::SkinDistance;
 pub use strands::Strands;
+pub use text::{is_hidden, printable};
 pub use units::{Axis, ReadOptions};

@@ -2,7 +2,7 @@
 
 use crate::{
     Character, Error, Motion, Problem, ReadOptions, Result, bvh,
-    bytes::read_regular,
+    bytes::{open_regular, read_regular},
     clip_choice::{first_note, pick_clip},
     contents, csv, external, gltf, hair, obj, ply,
     repair_notes::{Lost, repair_notes, strands_without_points},
@@ -128,6 +128,9 @@ pub struct Loaded<T> {
 
 /// Largest file that is read [bytes]: 4 GiB, about 300 million points.
 const MAX_FILE: u64 = 4 << 30;
+
+/// Largest text that a program reads as a whole [bytes]: 64 MiB, about a million lines.
+const MAX_TEXT: u64 = 64 << 20;
 
 /// Returns whether a file of a format for meshes holds a groom: an `.obj` file with polylines and no face before them, or
 /// a glTF file whose primitives are all lines. A file that cannot be read holds none.
@@ -361,8 +364,20 @@ fn check_scale(path: &Path, options: &ReadOptions) -> Result<()> {
     }
 }
 
-/// Reads all bytes of a regular file. Its content must not be of another kind than its extension.
-pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
+/// Checks that a path leads to a regular file that can be opened: a pipe would wait for a writer, and a device has
+/// no end.
+///
+/// # Errors
+/// Returns an error that says what the path leads to instead.
+pub fn check_file(path: &Path) -> Result<()> {
+    open_regular(path).map(drop).map_err(|source| unreadable(path, source))
+}
+
+/// Reads all bytes of a regular file, at most 4 GiB. Its content must not be of another kind than its extension.
+///
+/// # Errors
+/// Returns an error if the file is missing, larger, of another kind, or cannot be read; see [`check_file`].
+pub fn bytes_of(path: &Path) -> Result<Vec<u8>> {
     let data = any_bytes_of(path)?;
     contents::check(path, &data).map_err(|p| p.in_file(path))?;
     Ok(data)
@@ -370,19 +385,34 @@ pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>> {
 
 /// Reads all bytes of a regular file.
 fn any_bytes_of(path: &Path) -> Result<Vec<u8>> {
-    match read_regular(path, MAX_FILE) {
-        Ok(Some(data)) => {
-            crate::observe::report(path, &data);
-            Ok(data)
-        }
-        Ok(None) => {
-            let text = format!("the file is larger than the limit of {MAX_FILE} bytes; split it");
-            Err(Problem::limit(crate::Place::Whole, text).in_file(path))
-        }
-        Err(source) if source.kind() == io::ErrorKind::NotFound => {
-            Err(Error::NotFound { path: path.to_owned(), why: String::new() })
-        }
-        Err(source) => Err(Error::Unreadable { path: path.to_owned(), source }),
+    let data = at_most(path, MAX_FILE)?;
+    crate::observe::report(path, &data);
+    Ok(data)
+}
+
+/// Reads a regular file of text in UTF-8, at most 64 MiB.
+///
+/// # Errors
+/// Returns an error if the file is missing, larger, no such text, or cannot be read; see [`check_file`].
+pub fn text_of(path: &Path) -> Result<String> {
+    let not_text = |_| Problem::whole("the file is not text in UTF-8; save it as such").in_file(path);
+    String::from_utf8(at_most(path, MAX_TEXT)?).map_err(not_text)
+}
+
+/// Reads a regular file of at most `limit` bytes.
+fn at_most(path: &Path, limit: u64) -> Result<Vec<u8>> {
+    let data = read_regular(path, limit).map_err(|source| unreadable(path, source))?;
+    data.ok_or_else(|| {
+        let text = format!("the file is larger than the limit of {limit} bytes; split it");
+        Problem::limit(crate::Place::Whole, text).in_file(path)
+    })
+}
+
+fn unreadable(path: &Path, source: io::Error) -> Error {
+    let path = path.to_owned();
+    match source.kind() {
+        io::ErrorKind::NotFound => Error::NotFound { path, why: String::new() },
+        _ => Error::Unreadable { path, source },
     }
 }
 

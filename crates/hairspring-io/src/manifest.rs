@@ -136,8 +136,8 @@ impl Manifest {
     /// something that a user should know.
     ///
     /// # Errors
-    /// With `resume`, returns an error that says what differs if the origin of the earlier run differs, or
-    /// if its manifest cannot be read.
+    /// Returns an error if the file of this name is no manifest or cannot be read. With `resume`, also returns an error
+    /// that says what differs if the origin of the earlier run differs.
     pub fn begin(
         pattern: &Path,
         origin: Origin,
@@ -168,9 +168,9 @@ impl Manifest {
             Ok(None) if resume => {
                 note = Some(format!("{} does not exist, so no frame counts as finished", path.display()));
             }
-            Err(why) if resume => return Err(why),
-            // A new run replaces it.
-            Ok(None) | Err(_) => {}
+            Ok(None) => {}
+            // It may be a file of somebody else.
+            Err(why) => return Err(why),
         }
         Ok((Self { path, content, replaced: BTreeSet::new(), written: None }, note))
     }
@@ -282,7 +282,10 @@ fn name_of(path: &Path) -> String {
 fn read(path: &Path) -> Result<Option<Content>, ManifestError> {
     // Reading a pipe or a device might never end.
     if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
-        return Err(ManifestError::Unreadable(format!("{} is not a regular file", path.display())));
+        return Err(ManifestError::Unreadable(format!(
+            "{} is not a regular file; move it away, or choose another name for the output",
+            path.display()
+        )));
     }
     let text = match std::fs::read_to_string(path) {
         Ok(text) => text,
@@ -293,7 +296,7 @@ fn read(path: &Path) -> Result<Option<Content>, ManifestError> {
     };
     serde_json::from_str(&text).map(Some).map_err(|why| {
         ManifestError::Invalid(format!(
-            "{} is not the manifest of an earlier run ({why}); run it without --resume to start again",
+            "{} is not the manifest of an earlier run ({why}); move it away, or choose another name for the output",
             path.display()
         ))
     })

@@ -187,7 +187,7 @@ impl App {
     fn set_message(&mut self, text: impl Into<String>, wrong: bool) {
         let text = text.into();
         if let Some(place) = self.script.place().filter(|_| wrong) {
-            eprintln!("error: {place}: {text}");
+            eprintln!("error: {}", hairspring_io::printable(&format!("{place}: {text}")));
             self.script_errors.fetch_add(1, Relaxed);
         }
         self.message = Some((text, wrong, Instant::now()));

@@ -6,11 +6,8 @@ use crate::{
     destination::{destination, settled},
     recovery::KeptScene,
 };
-use hairspring_io::{Format, atomically};
-use std::{
-    io::ErrorKind,
-    path::{Path, PathBuf},
-};
+use hairspring_io::{ErrorKind, Format, atomically, text_of};
+use std::path::{Path, PathBuf};
 use toml_edit::{Item, Value};
 
 impl Document {
@@ -28,8 +25,8 @@ impl Document {
 
     /// Whether another program changed the file since it was read or saved here. A file that is gone does not count.
     pub fn is_changed_on_disk(&self) -> bool {
-        self.stored.as_ref().is_some_and(|known| match std::fs::read(&self.path) {
-            Ok(now) => now != known.as_bytes(),
+        self.stored.as_ref().is_some_and(|known| match text_of(&self.path) {
+            Ok(now) => now != *known,
             Err(why) => why.kind() != ErrorKind::NotFound,
         })
     }

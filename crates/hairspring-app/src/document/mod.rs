@@ -16,7 +16,7 @@ pub use history::Way;
 pub use open::{KINDS, new_scene, replaces_scene};
 
 use crate::{defaults::Reference, effective::effective, error::AppError, key::Key};
-use hairspring_io::{Inputs, Loaded, read_scene_text, read_settings, same_geometry};
+use hairspring_io::{Inputs, Loaded, read_scene_text, read_settings, same_geometry, text_of};
 use hairspring_scene::Scene;
 use history::{Draft, History};
 use std::path::{Path, PathBuf};
@@ -123,8 +123,7 @@ impl Document {
 
     /// Opens a scene file.
     pub fn open(path: &Path) -> Result<Self, AppError> {
-        let content = std::fs::read_to_string(path)
-            .map_err(|why| AppError::new(format!("{} could not be read: {why}", path.display())))?;
+        let content = text_of(path)?;
         let (style, text) = TextStyle::split(&content);
         Ok(Self { stored: Some(content), style, ..Self::new(path, text)? })
     }

@@ -1,8 +1,12 @@
 //! The arguments of a script's line: whatever a command does not expect is an error.
 
 use super::Line;
-use crate::{record::Kind, session::SPEEDS};
+use crate::{
+    record::{Kind, RecordFormat},
+    session::SPEEDS,
+};
 use glam::Vec2;
+use hairspring_scene::stage::FrameRate;
 use std::{fmt::Display, ops::RangeInclusive, path::PathBuf, str::FromStr};
 
 /// Most steps, frames or window frames that a line can name.
@@ -49,20 +53,26 @@ impl<'a> Arguments<'a> {
         }
     }
 
-    /// A width and a height [pixels]. A recording checks whether it can have them.
+    /// The width and the height of a recording [pixels].
     pub(super) fn size(self) -> Result<[u32; 2], String> {
         let what = "a width and a height, such as `size 1920 1080`";
         let words: [&str; 2] = self.words(what)?;
-        let [width, height] = words.map(|word| self.number(word, what, 1..=MOST));
+        let [width, height] = words.map(|word| self.number(word, what, RecordFormat::SIDES));
         Ok([width?, height?])
+    }
+
+    /// The frame rate of a recording or a bake.
+    pub(super) fn rate(self) -> Result<FrameRate, String> {
+        let what = "the frames per second";
+        let [word] = self.words(what)?;
+        FrameRate::of_output(word).map_err(|why| format!("`{}` needs {what}: '{word}': {why}", self.word))
     }
 
     /// Two places in the picture, and a number of frames.
     pub(super) fn path_of_pointer(self) -> Result<(Vec2, Vec2, u32), String> {
         let what = "five numbers: from x y, to x y, frames";
         let [from_x, from_y, to_x, to_y, frames] = self.words(what)?;
-        // A pointer may leave the picture.
-        let place = |word| self.number(word, what, -10.0..=10.0);
+        let place = |word| self.number(word, what, 0.0..=1.0);
         let from = Vec2::new(place(from_x)?, place(from_y)?);
         let to = Vec2::new(place(to_x)?, place(to_y)?);
         Ok((from, to, self.number(frames, what, 1..=MOST)?))

@@ -179,6 +179,14 @@ mod tests {
             "drag 0 0 1 1 1.5",
             "drag 0 0 1 1 0",
             "drag 0 0 inf 1 5",
+            "drag 2 2 3 3 1",
+            "hold 0.5 0.5 1.01 0.5 1",
+            "size 64 48",
+            "size 20000 20000",
+            "rate",
+            "rate 1000",
+            "rate 1/2",
+            "rate 24 30",
             "bake a.##.hair 0",
             "bake a.##.hair 1.5",
             "clip a.mp4 inf",
@@ -201,6 +209,10 @@ mod tests {
             ("wait 1e19", "whole number from 0 to 1000000"),
             ("seek 0", "whole number from 1 to 1000000"),
             ("speed 9", "number from 0.05 to 4"),
+            ("size 64 48", "whole number from 64 to 8192"),
+            ("rate 1000", "from 1 to 240"),
+            ("drag 0 0 3 0 1", "number from 0 to 1"),
+            ("overlay bogus on", "hair, body, colliders"),
         ] {
             let error = Script::parse("s.txt", wrong).unwrap_err().to_string();
             assert!(error.contains(range) && !(range.starts_with('n') && error.contains("whole")), "{error}");

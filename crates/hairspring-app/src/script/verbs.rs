@@ -162,7 +162,8 @@ pub const VERBS: &[Verb] = &[
         |r| {
             let (name, on) = r.named_switch()?;
             let known = SWITCHES.iter().find(|known| **known == name);
-            Ok(Line::Switch(known.ok_or_else(|| format!("unknown overlay '{name}'"))?, on))
+            let unknown = || format!("unknown overlay '{name}'; expected one of: {}", SWITCHES.join(", "));
+            Ok(Line::Switch(known.ok_or_else(unknown)?, on))
         },
     ),
     verb("compare", "on|off", "on", "opens or closes the second scene", |r| r.switch("compare")),
@@ -179,11 +180,15 @@ pub const VERBS: &[Verb] = &[
     verb("turntable", "FILE SECONDS", "a.mp4 2", "records a turn around the current moment", |r| {
         r.record(Kind::Turntable)
     }),
-    verb("size", "WIDTH HEIGHT", "1920 1080", "sets the size of recordings in pixels", |r| {
-        Ok(Line::Size(r.size()?))
-    }),
-    verb("rate", "RATE", "24", "sets the frames per second of recordings and bakes", |r| {
-        Ok(Line::Rate(r.text.parse()?))
+    verb(
+        "size",
+        "WIDTH HEIGHT",
+        "1920 1080",
+        "sets the size of recordings in pixels, 64 to 8192 each",
+        |r| Ok(Line::Size(r.size()?)),
+    ),
+    verb("rate", "RATE", "24", "sets the frames per second of recordings and bakes, 1 to 240", |r| {
+        Ok(Line::Rate(r.rate()?))
     }),
     verb("export", "FILE", "groom.hair", "writes the hair of the current frame", |r| {
         Ok(Line::Export(r.path()?))

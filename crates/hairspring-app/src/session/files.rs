@@ -97,7 +97,7 @@ mod tests {
         let hull = "[[collider]]\nshape.hull = { file = \"stone.obj\", scale = 1.0 }\n";
         let mut session = session(format!("{HEAD}{hull}"), folder.path());
         let why = session.keep_files([file("new.obj"), file("stone.obj")]).unwrap_err().to_string();
-        assert!(why.contains("stone.obj is a file of the scene"), "{why}");
+        assert!(why.contains("stone.obj is an input file"), "{why}");
         // Only the left scene has the file now, and only the right one its own.
         session.act(Action::Compare(true)).unwrap();
         session.act(Action::Remove("collider", 0)).unwrap();
@@ -107,7 +107,7 @@ mod tests {
         session.act(Action::Save(Some(file("right.toml")))).unwrap();
         session.act(Action::Second(false)).unwrap();
         let why = session.act(Action::Save(Some(file("right.toml")))).unwrap_err().to_string();
-        assert!(why.contains("right.toml is a file of the scene"), "{why}");
+        assert!(why.contains("right.toml is an input file"), "{why}");
         session.act(Action::Save(Some(file("left.toml")))).unwrap();
         session.act(Action::Save(Some(file("left.toml")))).unwrap();
     }

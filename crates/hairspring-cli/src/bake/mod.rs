@@ -6,7 +6,7 @@ mod samples;
 mod selection;
 
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
     frames::{self, FrameRange},
     input::Input,
@@ -66,7 +66,7 @@ pub struct Options {
     start: u32,
 
     /// Frames per second
-    #[arg(long, value_name = "RATE", default_value = "30", value_parser = frames::rate)]
+    #[arg(long, value_name = "RATE", default_value = "30", value_parser = FrameRate::of_output)]
     fps: FrameRate,
 
     /// Samples per frame, for motion blur. More than 1 needs one file of moving strands
@@ -311,7 +311,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "skipped": skipped,
             "fps": options.fps.hertz(),
         });
-        print_line(totals.json(&stage, summary));
+        print_json(&totals.json(&stage, summary));
     } else {
         let skipped = if skipped > 0 { format!(", {skipped} existed already") } else { String::new() };
         let taken = match options.samples {

@@ -2,10 +2,10 @@
 
 use super::Times;
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
     input::{Input, Units},
-    totals::grouped,
+    totals::{counted, grouped},
 };
 use hairspring_scene::{
     Scene,
@@ -100,7 +100,7 @@ pub(super) fn run(
     if as_json {
         let each =
             STAGES.iter().zip(&stages).map(|((name, ..), times)| ((*name).into(), json!(times.rank(0.5))));
-        print_line(json!({
+        print_json(&json!({
             "scene": path.display().to_string(),
             "threads": threads,
             "simd": stage.instruction_set(),
@@ -133,10 +133,12 @@ pub(super) fn run(
         grouped(simulated.0)
     ));
     print_line(format_args!(
-        "on       cpu, {threads} threads, {}, {}, {} substeps (at most {substeps}), {frames} frames of 1/60 s",
+        "on       cpu, {}, {}, {}, {} (at most {substeps}), {} of 1/60 s",
+        counted(threads, "thread"),
         stage.instruction_set(),
         solver.integrator.name(),
-        solver.substeps
+        counted(solver.substeps as usize, "substep"),
+        counted(frames as usize, "frame")
     ));
     print_line(format_args!(
         "time     {:.2} ms per frame (median), {:.2} ms (95 %); medians of the stages:",

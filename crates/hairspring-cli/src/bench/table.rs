@@ -6,8 +6,9 @@
 
 use super::{Options, Times, print_scene};
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
+    totals::counted,
 };
 use hairspring::{material::Model, settings::Integrator, simulation::Simulation};
 use serde_json::{Value, json};
@@ -88,7 +89,7 @@ pub(super) fn run(options: &Options, console: Console) -> Result<(), Fault> {
         let last = last.iter().map(|times| times.per_point(options)).cycle();
         let each = cells.iter().zip(&times).zip(last);
         let over = baseline(&cells);
-        print_line(Value::from_iter(
+        print_json(&Value::from_iter(
             each.map(|((cell, times), last)| object(options, cell, times, (over, last))),
         ));
     } else {
@@ -163,12 +164,12 @@ fn object(options: &Options, cell: &Cell, times: &Times, (over, last): (&str, f6
 fn print(options: &Options, cells: &[Cell], figures: &[f64]) {
     print_scene(options);
     print_line(format_args!(
-        "on       {}, {} threads, {}, {} substeps, {} frames of 1/60 s of each, {TURN} in turn",
+        "on       {}, {}, {}, {}, {} of 1/60 s of each, {TURN} in turn",
         options.device,
-        rayon::current_num_threads(),
+        counted(rayon::current_num_threads(), "thread"),
         Integrator::default().name(),
-        options.substeps,
-        options.frames
+        counted(options.substeps as usize, "substep"),
+        counted(options.frames as usize, "frame")
     ));
     print_line(format_args!(
         "figures  ns per point and substep, per core (wall time x threads), medians of the {} frames; in brackets the speedup over {}",

@@ -7,11 +7,12 @@ mod swing;
 
 use super::Options;
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
     input::Input,
     output,
     report::number,
+    totals::{counted, grouped},
 };
 use hairspring::settings::Integrator;
 use hairspring_scene::{
@@ -141,7 +142,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         output::write_whole(path, report::page(&setting, &trials).as_bytes())?;
     }
     if options.json {
-        print_line(as_json(&setting, &trials, options));
+        print_json(&as_json(&setting, &trials, options));
     } else {
         print(&setting, &trials);
         if let Some(path) = &options.report {
@@ -237,7 +238,7 @@ fn row(t: &Trial) -> [String; 8] {
     let stable = match (t.stable(), t.played.reset_strands) {
         (true, _) => "yes".into(),
         (false, 0) => "no".into(),
-        (false, n) => format!("no, {} resets", crate::totals::grouped(n)),
+        (false, n) => format!("no, {} resets", grouped(n)),
     };
     [
         t.integrator.name().into(),
@@ -247,12 +248,11 @@ fn row(t: &Trial) -> [String; 8] {
         t.swung.drift.map_or("blew up".into(), |d| format!("{:+.0} %", d * 100.0)),
         format!("{:.1}", t.played.ns),
         t.longest.label(),
-        t.points_in_real_time().map_or("none".into(), |n| crate::totals::grouped(two_digits(n) as usize)),
+        t.points_in_real_time().map_or("none".into(), |n| grouped(two_digits(n) as usize)),
     ]
 }
 
 fn print(setting: &Setting, trials: &[Trial]) {
-    let grouped = crate::totals::grouped;
     print_line(format_args!(
         "scene    {}: {} of {} strands simulated, {} points",
         setting.name,
@@ -261,10 +261,10 @@ fn print(setting: &Setting, trials: &[Trial]) {
         grouped(setting.simulated_points)
     ));
     print_line(format_args!(
-        "each     {} s of the scene, {} substeps per 1/60 s, {} threads, {}",
+        "each     {} s of the scene, {} per 1/60 s, {}, {}",
         number(setting.seconds),
-        setting.substeps,
-        rayon::current_num_threads(),
+        counted(setting.substeps as usize, "substep"),
+        counted(rayon::current_num_threads(), "thread"),
         setting.simd
     ));
     let rows: Vec<[String; 8]> =
@@ -327,7 +327,7 @@ fn percent(share: f64) -> String {
     match share {
         s if !s.is_finite() => "∞".into(),
         s if s >= 1e6 => format!("{:.0e} %", s * 100.0),
-        s if s >= 10.0 => format!("{} %", crate::totals::grouped((s * 100.0) as usize)),
+        s if s >= 10.0 => format!("{} %", grouped((s * 100.0) as usize)),
         s if s >= 0.1 => format!("{:.0} %", s * 100.0),
         s => format!("{:.3} %", s * 100.0),
     }

@@ -4,9 +4,9 @@ mod figures;
 
 use super::Options;
 use crate::{
-    console::{Console, print_line},
+    console::{Console, print_json, print_line},
     fault::Fault,
-    frames::{self, FrameRange},
+    frames::FrameRange,
     input::{self, print_notes},
     output,
     picture::{Setup, Studio, View},
@@ -84,7 +84,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     }
     let fps = match options.fps {
         Some(fps) => fps,
-        None => frames::rate("30").map_err(Fault::Usage)?,
+        None => FrameRate::of_output("30").map_err(Fault::Usage)?,
     };
     let mut picture = match options.no_picture {
         true => None,
@@ -92,6 +92,11 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     };
     let a = side(path, "--set-a", &options.set_a, options)?;
     let b = side(options.b.as_ref().unwrap_or(path), "--set-b", &options.set_b, options)?;
+    if let Some(picture) = &picture {
+        for side in [&a, &b] {
+            output::keep_inputs(&side.files, &side.path, [picture.path.clone()])?;
+        }
+    }
     print_notes(&a.notes, console);
     if b.notes != a.notes {
         print_notes(&b.notes, console);
@@ -139,7 +144,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if options.json {
         let listed: Vec<_> =
             settings.iter().map(|d| json!({ "key": d.key, "a": d.values[0], "b": d.values[1] })).collect();
-        print_line(json!({
+        print_json(&json!({
             "a": figures[0].json(&paths[0], &stages[0]),
             "b": figures[1].json(&paths[1], &stages[1]),
             "settings": listed,
@@ -243,6 +248,7 @@ impl Picture {
                 return Err(Fault::Usage(format!("{}: {text}", path.display())));
             }
         };
+        output::check_single(&path)?;
         output::try_folder(&path)?;
         let rows = if is_clip { 1 } else { MOMENTS };
         let [half_width, half_height] = SideBySide::half([width, height]);

@@ -5,6 +5,7 @@ use crate::{
     console::{Console, print_line},
     fault::Fault,
     interrupt,
+    totals::counted,
 };
 use hairspring::material::Model;
 use hairspring_validate::{Case, Method, Outcome};
@@ -92,11 +93,12 @@ pub(super) fn run(cases: &[&'static Case], console: Console) -> Result<(), Fault
     }
     print_line("");
     notes.iter().enumerate().for_each(|(k, note)| print_line(format_args!("{}. {note}", k + 1)));
-    let threads = rayon::current_num_threads();
+    print_line("");
     print_line(format_args!(
-        "\n{} cells in {:.0} s on {threads} threads.",
+        "{} cells in {:.0} s on {}.",
         found.iter().flatten().count(),
-        began.elapsed().as_secs_f64()
+        began.elapsed().as_secs_f64(),
+        counted(rayon::current_num_threads(), "thread")
     ));
     match found.iter().filter(|found| found.is_none()).count() {
         0 => Ok(()),

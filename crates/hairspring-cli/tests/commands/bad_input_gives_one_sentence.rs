@@ -3,7 +3,7 @@
 //! Scripts branch on the code, and people read the sentence, so it names the file and the problem. After
 //! each refusal the folder is unchanged: no output, no temporary file.
 
-use crate::common::{contents, fail, groom, program, run, succeed, write_groom};
+use crate::common::{contents, fail, groom, names, program, run, succeed, write_groom};
 use glam::Vec3;
 use std::path::Path;
 
@@ -53,11 +53,145 @@ fn an_output_never_replaces_a_file_of_the_scene() {
     let f = folder.path();
     hairspring_io::write_groom(&f.join("fan.2.data"), &groom(4)).unwrap();
     std::fs::write(f.join("s.toml"), "[[groom]]\nfile = \"fan.2.data\"\nscale = 1.0\n").unwrap();
-    let words = ["fan.2.data", "is a file of the scene and would be replaced"];
+    let words = ["fan.2.data", "is an input file and would be replaced"];
     refuse(f, &["bake", "s.toml", "-o", "fan.#.data", "--frames", "1-3"], 2, &words);
     refuse(f, &["bake", "./fan.2.data", "-o", "fan.2.data", "--frames", "1-1"], 2, &words);
     // Frame 2 is not written.
     succeed(f, &["bake", "s.toml", "-o", "fan.#.data", "--frames", "3-4"]);
+    let around = format!("../{}/fan.2.data", f.file_name().unwrap().to_str().unwrap());
+    for same in ["fan.2.data", "./fan.2.data", &around] {
+        refuse(f, &["convert", "fan.2.data", same], 2, &words);
+    }
+    let map = "[builtin]\nstrands = 20\nguides = 10\nmaps = { length = { texture = \"map.png\" } }\n";
+    hairspring_view::write_png(&f.join("map.png"), &hairspring_view::Image::new(4, 4)).unwrap();
+    std::fs::write(f.join("map.toml"), map).unwrap();
+    let compare = ["compare", "map.toml", "--set-b", "wind.gust=0.5", "-o", "map.png"];
+    refuse(f, &compare, 2, &["map.png is an input file"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_output_never_replaces_an_input_through_a_link() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    for (link, to) in [("link.hair", "groom.hair"), ("far.hair", "link.hair")] {
+        std::os::unix::fs::symlink(to, f.join(link)).unwrap();
+    }
+    for (from, to) in [("groom.hair", "link.hair"), ("far.hair", "groom.hair"), ("link.hair", "far.hair")] {
+        refuse(f, &["convert", from, to], 2, &["is an input file and would be replaced"]);
+    }
+}
+
+/// A pipe would wait for a writer. One is there, so that a program that opens the pipe ends this test, too.
+#[cfg(unix)]
+#[test]
+fn pipes_are_no_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    std::fs::write(f.join("head.toml"), "[builtin]\nstrands = 10\nguides = 5\n").unwrap();
+    for pipe in ["pipe.toml", "pipe.hair", "pipe.glb", "pipe.bvh", "pipe.txt", "pipe.pc2"] {
+        assert!(std::process::Command::new("mkfifo").arg(f.join(pipe)).status().unwrap().success());
+        let path = f.join(pipe);
+        std::thread::spawn(move || std::fs::OpenOptions::new().write(true).open(path));
+        std::os::unix::fs::symlink(pipe, f.join(format!("link-{pipe}"))).unwrap();
+    }
+    let before = names(f);
+    let wanted = "could not be read: it is a pipe, a socket or a device";
+    for arguments in [
+        &["live", "pipe.toml"][..],
+        &["live", "pipe.hair"],
+        &["live", "link-pipe.glb"],
+        &["live", "pipe.bvh"],
+        &["live", "--script", "pipe.txt"],
+        &["live", "--script", "link-pipe.txt", "head.toml"],
+        &["info", "pipe.pc2"],
+        &["info", "link-pipe.toml"],
+        &["convert", "pipe.hair", "a.data"],
+    ] {
+        let error = fail(f, arguments, 3);
+        assert!(error.contains(wanted), "{arguments:?}: {error}");
+    }
+    assert_eq!(names(f), before);
+}
+
+#[test]
+fn a_script_has_a_largest_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    std::fs::File::create(f.join("long.txt")).unwrap().set_len(65 << 20).unwrap();
+    let error = fail(f, &["live", "--script", "long.txt"], 4);
+    assert!(error.contains("long.txt") && error.contains("limit of 67108864 bytes"), "{error}");
+}
+
+/// A scheduler reads lines such as `openjd_fail: REASON` on standard output and standard error.
+#[cfg(unix)]
+#[test]
+fn a_name_never_begins_a_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    let evil = "a\nopenjd_fail: b\u{202e}";
+    std::fs::write(f.join(format!("{evil}.hair")), std::fs::read(f.join("groom.hair")).unwrap()).unwrap();
+    let scene =
+        "name = \"a\\nopenjd_fail: b\\u202e\"\n[[groom]]\nfile = \"groom.hair\"\nname = \"\\u001b[31m\"\n";
+    std::fs::write(f.join("scene.toml"), scene).unwrap();
+    let groom = format!("{evil}.hair");
+    let [numbered, copy] = [format!("{evil}.#.hair"), format!("{evil}.data")];
+    for arguments in [
+        &["bake", "scene.toml", "-o", &numbered, "--frames", "1-2", "--progress", "openjd"][..],
+        &["bake", "scene.toml", "-o", &numbered, "--frames", "1-3", "--resume"],
+        &["bake", "scene.toml", "-o", &numbered, "--frames", "1-2", "--fps", "24"],
+        &["bake", "scene.toml", "-o", &numbered, "--frames", "1-2", "--fps", "25", "--progress", "json"],
+        &["bake", "scene.toml", "-o", &numbered, "--frames", "1-2", "--fps", "25", "--json"],
+        &["info", "scene.toml"],
+        &["info", "scene.toml", "--json"],
+        &["info", &groom],
+        &["convert", &groom, &copy],
+        &["compare", &groom, "groom.hair", "--no-picture", "--seconds", "0.1"],
+        &["compare", "scene.toml", "--set-b", "wind.gust=0.5", "--no-picture", "--seconds", "0.1", "--json"],
+        &["render", &groom, "-o", "a.png", "--size", "64x64", "--frames", evil],
+        &["bake", "scene.toml", "-o", &format!("{evil}.png")],
+        &["info", &format!("{evil}.none")],
+        &[evil],
+    ] {
+        let output = run(f, arguments);
+        for text in [output.stdout, output.stderr] {
+            let text = String::from_utf8(text).unwrap();
+            assert!(!text.lines().any(|line| line.starts_with("openjd_fail")), "{arguments:?}: {text}");
+            let shown = |c: char| c != '\n' && hairspring_io::is_hidden(c);
+            assert!(!text.contains(shown), "{arguments:?}: {text:?}");
+        }
+    }
+    let found = crate::common::json(&succeed(
+        f,
+        &["bake", "scene.toml", "-o", &numbered, "--frames", "1-2", "--json"],
+    ));
+    assert_eq!(found["output"], numbered.as_str(), "the path as JSON is the path");
+}
+
+#[test]
+fn a_file_in_the_place_of_a_folder_is_said_to_be_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    let words = ["groom.hair is a file and not a folder"];
+    refuse(f, &["bake", "groom.hair", "-o", "groom.hair/c.#.hair"], 5, &words);
+    let error = fail(f, &["bake", "groom.hair", "-o", "x.#.hair", "--guides", "99999999999"], 2);
+    assert!(error.contains("expected a number from 1 to 4294967295"), "{error}");
+}
+
+#[test]
+fn one_file_has_no_frame_number() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    let words = ["writes one file", "leave out the # signs"];
+    refuse(f, &["convert", "groom.hair", "x.##.data"], 2, &words);
+    let settings = ["--set-a", "wind.gust=0.1", "--set-b", "wind.gust=0.5"];
+    for output in ["x.####.png", "x.#.mp4", "x.##.jpg"] {
+        refuse(f, &[&["compare", "groom.hair", "-o", output][..], &settings].concat(), 2, &words);
+    }
 }
 
 #[test]

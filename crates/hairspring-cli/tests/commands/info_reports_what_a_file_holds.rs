@@ -39,6 +39,16 @@ fn json_of_a_groom() {
 }
 
 #[test]
+fn a_bald_head_has_no_lengths() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("bald.toml"), "[builtin]\nstrands = 0\n").unwrap();
+    let found = json(&succeed(folder.path(), &["info", "bald.toml", "--json"]));
+    let scalp = &found["grooms"][0];
+    assert_eq!(scalp["strands"], 0);
+    assert!(["length_m", "bounds_m", "points_min"].iter().all(|key| scalp[key].is_null()), "{scalp}");
+}
+
+#[test]
 fn text_output_has_the_same_values() {
     let folder = tempfile::tempdir().unwrap();
     write_groom(folder.path(), 1200);

@@ -82,6 +82,25 @@ fn resuming_another_run_is_refused_with_the_difference() {
 }
 
 #[test]
+fn a_file_that_is_no_manifest_is_not_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_scene(f, 40);
+    std::fs::write(f.join(MANIFEST), "{ \"notes\": \"mine\" }").unwrap();
+    let before = contents(f);
+    let error = fail(f, &[&BAKE[..], &["--frames", "1-2"]].concat(), 4);
+    let words = [MANIFEST, "is not the manifest of an earlier run", "choose another name for the output"];
+    assert!(words.iter().all(|word| error.contains(word)), "{error}");
+    let pictures = f.join("hair.render.png.json");
+    std::fs::write(&pictures, "mine").unwrap();
+    let render = ["render", "scene.toml", "-o", "hair.##.png", "--frames", "1-2", "--size", "64x64"];
+    let error = fail(f, &render, 4);
+    assert!(error.contains("hair.render.png.json is not the manifest"), "{error}");
+    std::fs::remove_file(pictures).unwrap();
+    assert!(contents(f) == before, "something has changed");
+}
+
+#[test]
 fn a_truncated_or_changed_frame_is_written_again_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();

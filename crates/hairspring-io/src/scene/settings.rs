@@ -1,7 +1,7 @@
 //! The settings that `Stage::update_settings` applies: a scene without its geometry.
 
 use super::{Reader, builtin, file::SceneFile, material};
-use crate::{Format, Result};
+use crate::{Format, Result, text};
 use glam::Vec3;
 use hairspring_scene::{Collider, Scene, SceneGroom, Shape};
 use std::path::Path;
@@ -25,7 +25,7 @@ impl Reader<'_> {
             let materials = material::of_groom(self.text, file, groom).map_err(|p| p.in_file(self.path))?;
             let stem = groom.file.as_ref().map(|file| stem(file.get_ref()));
             grooms.push(SceneGroom {
-                name: groom.name.clone().or(stem).unwrap_or_else(|| "Grown hair".into()),
+                name: text::name(&groom.name.clone().or(stem).unwrap_or_else(|| "Grown hair".into())),
                 materials,
                 guides: groom.guides,
                 effects: groom.effects,
@@ -35,7 +35,7 @@ impl Reader<'_> {
         }
         self.find_unit_of_hulls(file);
         Ok(Scene {
-            name: file.name.clone().unwrap_or_else(|| stem(self.path)),
+            name: text::name(&file.name.clone().unwrap_or_else(|| stem(self.path))),
             grooms,
             colliders: self.colliders(&file.collider)?,
             wind: file.wind,

@@ -44,6 +44,17 @@ impl FrameRate {
             .then_some(Self { frames: scaled as u32, seconds: DIGITS })
     }
 
+    /// Parses the rate of a bake, a clip or a comparison: 1 to 240 Hz.
+    ///
+    /// # Errors
+    /// Returns what was expected.
+    pub fn of_output(text: &str) -> Result<Self, String> {
+        let rate = text.parse::<Self>().ok().filter(|rate| (1.0..=240.0).contains(&rate.hertz()));
+        rate.ok_or_else(|| {
+            "expected a number or a fraction from 1 to 240, such as 30, 23.976 or 24000/1001".into()
+        })
+    }
+
     /// Returns the number of frames per second [Hz].
     pub fn hertz(self) -> f64 {
         f64::from(self.frames) / f64::from(self.seconds)
