@@ -95,9 +95,12 @@ pub(crate) enum UnitHint<'a> {
     None,
     /// The body that the mesh belongs to, and the placement of the mesh.
     PartOf(WholeBody, Affine3A),
-    /// Chooses among units [m] by the grooms that grow on the mesh. The second argument returns the mesh in a unit.
-    Grown(&'a dyn Fn(&[f32], &dyn Fn(f32) -> Mesh) -> Option<f32>),
+    /// The grooms that grow on the mesh decide.
+    Grown(&'a ChooseUnit<'a>),
 }
+
+/// Chooses among units [m] by the grooms of a scene. The second argument returns the mesh that they grow on in a unit.
+pub(crate) type ChooseUnit<'a> = dyn Fn(&[f32], &dyn Fn(f32) -> Mesh) -> Option<f32> + 'a;
 
 /// Returns the scale and rotation to apply to a mesh, and adds a note about whatever was guessed.
 pub(crate) fn settle(

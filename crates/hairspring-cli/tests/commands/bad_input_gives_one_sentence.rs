@@ -63,7 +63,9 @@ fn an_output_never_replaces_a_file_of_the_scene() {
         refuse(f, &["convert", "fan.2.data", same], 2, &words);
     }
     let map = "[builtin]\nstrands = 20\nguides = 10\nmaps = { length = { texture = \"map.png\" } }\n";
-    hairspring_view::write_png(&f.join("map.png"), &hairspring_view::Image::new(4, 4)).unwrap();
+    let mut white = hairspring_view::Image::new(4, 4);
+    white.rgb.fill(255);
+    hairspring_view::write_png(&f.join("map.png"), &white).unwrap();
     std::fs::write(f.join("map.toml"), map).unwrap();
     let compare = ["compare", "map.toml", "--set-b", "wind.gust=0.5", "-o", "map.png"];
     refuse(f, &compare, 2, &["map.png is an input file"]);
