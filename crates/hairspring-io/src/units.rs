@@ -38,7 +38,7 @@ pub(crate) struct FileUnits {
 }
 
 /// Plausible sizes of the longest side of the box around a bust or a whole figure [m].
-const BODY: std::ops::RangeInclusive<f32> = 0.15..=2.5;
+const BODY: std::ops::RangeInclusive<f32> = 0.14..=2.5;
 /// Typical sizes of a body, which a guess tries to match [m]: a bust, an adult.
 const TYPICAL_BODIES: [f32; 2] = [0.5, 1.7];
 /// Shortest side of the box around a head or a bust, at least, over the longest [1]. A standing adult is flatter.
