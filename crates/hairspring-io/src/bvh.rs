@@ -176,6 +176,8 @@ const UNITS: [(f32, &str); 6] = [
 /// Height of a person's skeleton, from a small child to a tall adult [m]. It ends at the crown or 10 cm below it, and at
 /// the ankle or the toe.
 const PERSON: std::ops::RangeInclusive<f32> = 0.7..=2.4;
+/// Smallest height of a person in units that are rare for children [m].
+const ADULT: f32 = 1.2;
 /// Usual height of a person's skeleton [m], which the guess comes nearest to.
 const TYPICAL: f32 = 1.6;
 
@@ -205,7 +207,12 @@ pub(crate) fn read_in_meters(
     let scale = options.scale.unwrap_or_else(|| {
         let whole = is_person(&motion.joints);
         let (plausible, what) = if whole { (PERSON, "person is then") } else { (PART, "skeleton is then") };
-        let mut units = UNITS.iter().filter(|(meters, _)| plausible.contains(&(height * meters)));
+        let is_metric = |meters: f32| [1.0, 0.01, 0.001].contains(&meters);
+        let fits = |meters: f32| {
+            plausible.contains(&(height * meters))
+                && (!whole || is_metric(meters) || height * meters >= ADULT)
+        };
+        let mut units = UNITS.iter().filter(|(meters, _)| fits(*meters));
         let off = |meters: f32| (height * meters / TYPICAL).ln().abs();
         // A part of a person has no usual height.
         let unit = if whole { units.min_by(|a, b| off(a.0).total_cmp(&off(b.0))) } else { units.next() };

@@ -1,9 +1,11 @@
 //! Vertices of a mesh that no triangle uses.
 
+use glam::Vec3;
 use hairspring::body::Mesh;
 
 /// Moves vertices that no triangle uses into the box around the others, so that they do not decide the size of the mesh.
-/// They keep their numbers, by which weights and caches name them. Returns a note if there are any outside.
+/// They keep their numbers, by which weights and caches name them. Returns a note if there are any outside. If most of the
+/// vertices are, they stay: a hull is made of them.
 pub(crate) fn keep_inside(mesh: &mut Mesh) -> Option<String> {
     let mut used = vec![false; mesh.positions.len()];
     mesh.triangles.iter().flatten().for_each(|v| used[*v as usize] = true);
@@ -12,18 +14,21 @@ pub(crate) fn keep_inside(mesh: &mut Mesh) -> Option<String> {
     if !(lo.is_finite() && hi.is_finite()) {
         return None;
     }
-    let unused = mesh.positions.iter_mut().zip(&used).filter(|(_, used)| !**used);
-    let outside = unused.filter(|(p, _)| !(p.cmpge(lo).all() && p.cmple(hi).all()));
-    let count = outside.map(|(p, _)| *p = p.max(lo).min(hi)).count();
-    (count > 0).then(|| {
-        format!("{count} vertices that no face uses lie outside of the mesh and do not count; remove them")
-    })
+    let is_outside = |(p, used): (&Vec3, &bool)| !used && !(p.cmpge(lo).all() && p.cmple(hi).all());
+    let count = mesh.positions.iter().zip(&used).filter(|pair| is_outside(*pair)).count();
+    // A cloud of points, of which a hull is made.
+    if count == 0 || count * 2 > used.len() {
+        return None;
+    }
+    for (p, _) in mesh.positions.iter_mut().zip(&used).filter(|(_, used)| !**used) {
+        *p = p.max(lo).min(hi);
+    }
+    Some(format!("{count} vertices that no face uses lie outside of the mesh and do not count; remove them"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     #[test]
     fn only_vertices_without_a_face_move() {

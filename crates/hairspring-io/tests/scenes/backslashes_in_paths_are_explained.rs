@@ -7,8 +7,7 @@ fn an_escape_sequence_that_is_no_such_is_explained() {
     for path in ["C:\\Users\\me\\fan.data", "C:\\new\\head.data", "C:\\x\\y.data", "..\\"] {
         let error = message(&format!("[[groom]]\nfile = \"{path}\"\n"));
         assert!(error.starts_with("scene.toml, line 2: "), "{error}");
-        let is_open = path == "..\\";
-        assert_eq!(error.ends_with("write paths with / or in single quotes"), !is_open, "{error}");
+        assert!(error.ends_with("write paths with / or in single quotes"), "{error}");
     }
 }
 
