@@ -176,8 +176,8 @@ const UNITS: [(f32, &str); 6] = [
 /// Height of a person's skeleton, from a small child to a tall adult [m]. It ends at the crown or 10 cm below it, and at
 /// the ankle or the toe.
 const PERSON: std::ops::RangeInclusive<f32> = 0.7..=2.4;
-/// Smallest height of a person in units that are rare for children [m].
-const ADULT: f32 = 1.2;
+/// The same of an adult, for units that are rarer than meters, centimeters and millimeters [m].
+const ADULT: std::ops::RangeInclusive<f32> = 1.35..=1.95;
 /// Usual height of a person's skeleton [m], which the guess comes nearest to.
 const TYPICAL: f32 = 1.6;
 
@@ -209,8 +209,8 @@ pub(crate) fn read_in_meters(
         let (plausible, what) = if whole { (PERSON, "person is then") } else { (PART, "skeleton is then") };
         let is_metric = |meters: f32| [1.0, 0.01, 0.001].contains(&meters);
         let fits = |meters: f32| {
-            plausible.contains(&(height * meters))
-                && (!whole || is_metric(meters) || height * meters >= ADULT)
+            let range = if whole && !is_metric(meters) { &ADULT } else { &plausible };
+            range.contains(&(height * meters))
         };
         let mut units = UNITS.iter().filter(|(meters, _)| fits(*meters));
         let off = |meters: f32| (height * meters / TYPICAL).ln().abs();

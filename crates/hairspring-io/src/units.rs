@@ -307,9 +307,13 @@ pub(crate) fn bounds(points: impl Iterator<Item = Vec3>) -> (Vec3, Vec3) {
     points.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
 }
 
-/// Rotates `p` by `turn`: exactly if `turn` is the identity, and without rounding for ±90° about X.
+/// Rotates `p` by `turn`, without rounding if that turns Z or Y up.
 fn turned(turn: Quat, p: Vec3) -> Vec3 {
-    if turn == Quat::IDENTITY { p } else { Vec3::new(p.x, p.z, -p.y) }
+    match turn {
+        _ if turn == Quat::IDENTITY => p,
+        _ if turn == turn_of(Axis::Z) => Vec3::new(p.x, p.z, -p.y),
+        _ => turn * p,
+    }
 }
 
 /// Converts a groom to meters and Y up.

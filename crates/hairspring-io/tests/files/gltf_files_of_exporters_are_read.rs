@@ -558,7 +558,6 @@ fn an_avatar_that_looks_along_minus_z_is_turned() {
     for (time, (rest, moved, _)) in [0.0, 0.3].into_iter().zip(known) {
         let (of_rest, of_moved, notes) = posed(&file, time);
         assert_noted_once(&notes, &["the file is a VRM 0.x avatar, which looks along -Z"]);
-        println!("{rest:?} {of_rest:?} {moved:?} {of_moved:?}");
         assert!(hairspring_test::farthest(&of_rest, &turned(rest)) < 1e-6);
         assert!(hairspring_test::farthest(&of_moved, &turned(moved)) < 1e-6, "at {time} s");
     }

@@ -38,10 +38,10 @@ fn persons_of_any_height_have_the_unit_of_their_file() {
         };
         check(1.0, 80, 230);
         check(0.001, 80, 230);
-        // A smaller child in centimeters may be an adult in inches, and so on.
+        // A smaller child in centimeters may be an adult in inches. Other units are those of adults.
         check(0.01, 105, 230);
-        check(0.0254, 120, 230);
-        check(0.0254 / 0.45, 125, 230);
+        check(0.0254, 135, 195);
+        check(0.0254 / 0.45, 135, 195);
     }
 }
 
