@@ -127,7 +127,7 @@ fn home(window: &mut Harness<'static, App>, folder: &Path) -> [usize; 2] {
     // Memory of the previous scene is freed one second later, and a picture in progress uses some
     // meanwhile. So the minimum over several seconds is taken.
     let (began, mut least) = (Instant::now(), [usize::MAX; 2]);
-    while began.elapsed() < Duration::from_secs(5) {
+    while began.elapsed() < Duration::from_secs(10) {
         window.step();
         let now = [memory::in_use(), memory::resident().unwrap_or(0)];
         least = [0, 1].map(|k| least[k].min(now[k]));

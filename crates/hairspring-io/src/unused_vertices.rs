@@ -14,7 +14,7 @@ pub(crate) fn keep_inside(mesh: &mut Mesh) -> Option<String> {
     if !(lo.is_finite() && hi.is_finite()) {
         return None;
     }
-    let is_outside = |(p, used): (&Vec3, &bool)| !used && !(p.cmpge(lo).all() && p.cmple(hi).all());
+    let is_outside = |(p, used): (&Vec3, &bool)| !(*used || p.cmpge(lo).all() && p.cmple(hi).all());
     let count = mesh.positions.iter().zip(&used).filter(|pair| is_outside(*pair)).count();
     // A cloud of points, of which a hull is made.
     if count == 0 || count * 2 > used.len() {
