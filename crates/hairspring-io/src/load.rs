@@ -418,9 +418,10 @@ fn unreadable(path: &Path, source: io::Error) -> Error {
 
 /// Reads a file next to `path`: in its folder or below, never above.
 fn sibling(path: &Path, name: &str) -> Option<Vec<u8>> {
-    let inside = Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_)));
-    let beside = path.parent().unwrap_or(Path::new("")).join(name);
-    inside.then(|| any_bytes_of(&beside).ok()).flatten()
+    if !Path::new(name).components().all(|c| matches!(c, std::path::Component::Normal(_))) {
+        return None;
+    }
+    any_bytes_of(&path.with_file_name(name)).ok()
 }
 
 /// Escapes the characters of names that control a terminal.

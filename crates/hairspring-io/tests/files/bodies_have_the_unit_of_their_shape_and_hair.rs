@@ -1,30 +1,10 @@
 //! Promise: the unit of a body is guessed from its size and shape, and from the hair that grows on it: a head in
 //! centimeters is no adult in decimeters.
 
+use crate::ellipsoid::write_ellipsoid;
 use glam::Vec3;
 use hairspring_io::{ReadOptions, read_body, read_scene};
 use std::{f32::consts::TAU, fmt::Write, fs, path::Path};
-
-/// Writes an ellipsoid with these half axes around `center` [file units].
-fn write_body(path: &Path, center: Vec3, half: Vec3) {
-    let (mut text, rings, around) = (String::new(), 12, 24);
-    for ring in 0..=rings {
-        for k in 0..around {
-            let (polar, angle) = (ring as f32 / rings as f32 * TAU / 2.0, k as f32 / around as f32 * TAU);
-            let out = Vec3::new(polar.sin() * angle.cos(), polar.cos(), polar.sin() * angle.sin());
-            let p = center + out * half;
-            writeln!(text, "v {} {} {}", p.x, p.y, p.z).unwrap();
-        }
-    }
-    for ring in 0..rings {
-        for k in 0..around {
-            let at = |r: usize, k: usize| r * around + k % around + 1;
-            let corners = [at(ring, k), at(ring, k + 1), at(ring + 1, k + 1), at(ring + 1, k)];
-            writeln!(text, "f {} {} {} {}", corners[0], corners[1], corners[2], corners[3]).unwrap();
-        }
-    }
-    fs::write(path, text).unwrap();
-}
 
 /// Writes strands of 20 cm on top of the body as a `.csv` file, times `unit`.
 fn write_hair(path: &Path, top: Vec3, unit: f32) {
@@ -44,7 +24,7 @@ fn a_head_in_centimeters_is_no_adult_in_decimeters() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.obj");
     let unit = |sides: Vec3| {
-        write_body(&path, Vec3::Y * 30.0, 0.5 * sides);
+        write_ellipsoid(&path, Vec3::Y * 30.0, 0.5 * sides);
         read_body(&path, &ReadOptions::default()).unwrap().scale
     };
     for height in 15..=27 {
@@ -73,7 +53,7 @@ fn the_hair_of_a_scene_decides_between_units() {
     // A face as flat as an adult in centimeters, and a head in millimeters that may be an adult in centimeters.
     for (sides, unit) in [(Vec3::new(0.15, 0.2, 0.06), 100.0), (Vec3::new(0.16, 0.23, 0.19), 1000.0)] {
         let center = Vec3::Y * 1.6;
-        write_body(&path("a.obj"), center * unit, 0.5 * sides * unit);
+        write_ellipsoid(&path("a.obj"), center * unit, 0.5 * sides * unit);
         for (of_hair, more) in [(1.0, "scale = 1.0"), (1.0, ""), (unit, "")] {
             write_hair(&path("a.csv"), center + Vec3::Y * 0.5 * sides, of_hair);
             let (height, notes) = read(more);

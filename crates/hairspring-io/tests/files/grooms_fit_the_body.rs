@@ -4,11 +4,11 @@
 //! points do not decide it. Roots away from the skin, strands that begin at their tips, and colors that
 //! replace those of the look are reported.
 
-use crate::samples;
+use crate::{ellipsoid::write_ellipsoid, samples};
 use glam::{Vec2, Vec3};
 use hairspring::groom::Groom;
 use hairspring_io::{ReadOptions, SkinDistance, hair, read_groom, read_scene, tfx};
-use std::{f32::consts::TAU, fmt::Write, fs, path::Path};
+use std::{f32::consts::TAU, fs, path::Path};
 use tempfile::TempDir;
 
 /// Strands of `length` m on a sphere of radius `radius` m around `center`, outward, times `unit`.
@@ -36,23 +36,7 @@ fn write_data(path: &Path, strands: &[Vec<Vec3>]) {
 
 /// Writes a sphere as an `.obj` in meters.
 fn write_sphere(path: &Path, center: Vec3, radius: f32) {
-    let (mut text, rings, around) = (String::new(), 16, 32);
-    for ring in 0..=rings {
-        for k in 0..around {
-            let (polar, angle) = (ring as f32 / rings as f32 * TAU / 2.0, k as f32 / around as f32 * TAU);
-            let out = Vec3::new(polar.sin() * angle.cos(), polar.cos(), polar.sin() * angle.sin());
-            let p = center + out * radius;
-            writeln!(text, "v {} {} {}", p.x, p.y, p.z).unwrap();
-        }
-    }
-    for ring in 0..rings {
-        for k in 0..around {
-            let at = |r: usize, k: usize| r * around + k % around + 1;
-            writeln!(text, "f {} {} {}", at(ring, k), at(ring, k + 1), at(ring + 1, k)).unwrap();
-            writeln!(text, "f {} {} {}", at(ring, k + 1), at(ring + 1, k + 1), at(ring + 1, k)).unwrap();
-        }
-    }
-    fs::write(path, text).unwrap();
+    write_ellipsoid(path, center, Vec3::splat(radius));
 }
 
 const CENTER: Vec3 = Vec3::new(0.0, 1.6, 0.0);

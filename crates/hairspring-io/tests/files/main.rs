@@ -1,5 +1,7 @@
 //! Promises of the readers and writers of grooms, bodies and motions. Each file is one promise.
 
+#[path = "../common/ellipsoid.rs"]
+mod ellipsoid;
 #[path = "../common/gltf_file.rs"]
 mod gltf_file;
 #[path = "../common/samples.rs"]

@@ -56,8 +56,8 @@ impl Setup<'_> {
         }
     }
 
-    /// The share of the backdrop that the ground leaves in the pixel at column and row `at`: what it adds is linear in
-    /// what is behind it.
+    /// The share of the backdrop that the ground leaves in the pixel at column and row `at`. The color there is linear in
+    /// that of the backdrop, so two backdrops, white and black, give the share.
     #[inline(always)]
     pub fn share_of_wall(&self, at: [usize; 2], through: f32) -> Vec3 {
         match self.floor {
