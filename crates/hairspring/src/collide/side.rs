@@ -84,6 +84,28 @@ impl Edges {
         self.side_in(simd, own(simd, &self.start, segment), deep)
     }
 
+    /// Returns which segments from `a` to `a + e` (world) pierced a thin box at the start of the substep, more than its
+    /// thickness away from its rim. A correction would have to take them around the rim.
+    ///
+    /// ```text
+    ///           ◯───╲
+    ///     rim ┃──────╲──────┃ rim      the box, and a segment through it
+    ///                 ╲───◯
+    /// ```
+    #[inline(always)]
+    pub fn pierced_by<S: Simd>(&self, simd: S, segment: (V3<S>, V3<S>)) -> Mask<S> {
+        let (a, e) = own(simd, &self.start, segment);
+        let (a, e) = ([a.x, a.y, a.z], [e.x, e.y, e.z]);
+        let thin = (0..3).fold(0, |k, j| if self.half[j] < self.half[k] { j } else { k });
+        let before = a[thin];
+        let mut pierced = (before * (before + e[thin])).simd_lt(0.0);
+        for j in (0..3).filter(|&j| j != thin) {
+            let place = a[j] - e[j] * (before / e[thin]);
+            pierced &= place.abs().simd_lt(self.half[j] - 2.0 * self.half[thin]);
+        }
+        pierced
+    }
+
     /// Returns the nearest edge of the segments from `a` to `a + e` (world) at the end of the substep,
     /// whichever side they started on.
     #[inline(always)]

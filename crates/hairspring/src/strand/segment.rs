@@ -39,7 +39,8 @@ const SAG: f32 = 0.015;
 const NEAREST: f32 = 0.125;
 
 /// The same for a thin box, whose edge passes over all places of a segment [1]. Found by trial: with
-/// [`NEAREST`], boxes of 1 mm lost 1 to 3 % of the hair that they were dragged through.
+/// [`NEAREST`], boxes of 1 mm lost 1 to 3 % of the hair that they were dragged through. In refined substeps it is 0,
+/// because [`relax`](super::relax) limits the speed of the outer end.
 const NEAREST_OF_BOX: f32 = 0.25;
 
 /// Shortest lever for corrections of the outer end at a thin box, or at a rod thinner than
@@ -130,10 +131,26 @@ pub fn resolve_segment_contact<S: Simd>(
         side.known &= link.length.simd_gt(2.0 * edges.half_thickness()) & !held;
         (edges, side)
     });
-    // A rod that is left near the inner end would be past the segment before the next solve.
+    // Corrections of a segment that goes through a thin box would throw it from side to side. It is left as it is until
+    // the box is gone.
+    if let Some(edges) = edges.filter(|edges| edges.is_box()) {
+        let pierced = may & edges.pierced_by(simd, (a - inner.displacement, old));
+        if pierced.any_true() {
+            let row = &mut tile.segment_contacts[i][segment_contact::FORCE];
+            store(pierced.select(zero, load(simd, row)), row);
+            may &= !pierced;
+            if !may.any_true() {
+                return e;
+            }
+        }
+    }
+    // What is left near the inner end would be past the segment before the next solve.
     let nearest = F::<S>::splat(simd, NEAREST);
     let (from, shortest) = match edges {
-        Some(edges) if edges.is_box() => (F::splat(simd, NEAREST_OF_BOX), F::splat(simd, SHORTEST)),
+        Some(edges) if edges.is_box() => {
+            let of_box = if finish.relaxation < 1.0 { 0.0 } else { NEAREST_OF_BOX };
+            (F::splat(simd, of_box), F::splat(simd, SHORTEST))
+        }
         Some(edges) => {
             let thin = edges.is_rod_within(link.length * THIN_FOR_LEVER);
             let shortest = thin.select(F::splat(simd, SHORTEST), nearest);
