@@ -1,13 +1,15 @@
-//! Values of a scene that are allowed, but are probably in another unit than meters.
+//! Settings of a scene that are allowed, but hardly what is meant: lengths in another unit than meters, and ties that strand
+//! contact keeps open.
 
 use super::file::SceneFile;
+use hairspring::forces::Manipulator;
 
 /// Length of grown hair above which it is reported [m]. Few people have longer hair.
 const LONG: f32 = 3.0;
 /// Radius of a fiber above which it is reported [m]: four times that of a whisker.
 const THICK: f64 = 1e-3;
 
-/// Notes about lengths and radii that no hair has.
+/// Notes about lengths and radii that no hair has, and about ties of strands that support each other.
 pub(super) fn notes(scene: &SceneFile) -> Vec<String> {
     let grown = scene.groom.iter().filter_map(|groom| groom.grow.as_ref());
     let lengths = grown.map(|grow| grow.get_ref().growth().length).filter(|length| *length > LONG);
@@ -22,5 +24,16 @@ pub(super) fn notes(scene: &SceneFile) -> Vec<String> {
             2.0 * radius
         )
     });
-    lengths.chain(radii).collect()
+    lengths.chain(radii).chain(held_open(scene)).collect()
+}
+
+/// A note about ties in a scene with strand contact. The ring gathers the centers of all strands, and their contacts keep
+/// them apart.
+fn held_open(scene: &SceneFile) -> Option<String> {
+    let ties = scene.hand.iter().any(|hand| matches!(hand.tool, Manipulator::Tie(_)));
+    (ties && scene.neighbours.on).then(|| {
+        "strands with [neighbours] keep each other out of the ring of a tie, and slip out of a narrow one; use [volume] \
+         instead, or a `neighbours.radius` at which all of them fit into the ring"
+            .into()
+    })
 }

@@ -15,4 +15,5 @@ mod scene_file_errors_name_line_and_remedy;
 mod scene_files_give_the_scene_they_describe;
 mod scene_page_is_correct;
 mod settings_are_read_apart_from_geometry;
+mod ties_that_strand_contact_keeps_open_are_reported;
 mod what_a_scene_cannot_use_is_reported;
