@@ -192,7 +192,7 @@ impl Volume {
         let requested = settings.cell.unwrap_or(rest_spacing.cell);
         // Hair reaches no farther from its roots than its length.
         let extent = Extent::of(&tiles, &GridTransform::new(&at.anchor, 1.0), Vec3::ZERO);
-        let reach = rest::reach((extent.lo, extent.hi), at.length);
+        let reach = rest::reach(extent.roots.into(), at.length);
         let size = (reach.1 - reach.0).max(Vec3::splat(requested));
         let mut cell = requested.max((size.element_product() / (0.5 * MAX_NODES)).cbrt());
         // If hair is in two places far apart, most of the grid is the ring.
