@@ -14,7 +14,7 @@
 //!
 //! # Limitations
 //! A cut near the inner end is left to the next solve. A strand that is caught, or that lands at 30 m/s, is
-//! inside for a moment.
+//! inside for a moment. A segment that pierces a thin box stays there until the box or the strand has left.
 
 use super::{
     assemble::SubstepContext,
@@ -149,7 +149,8 @@ pub fn resolve_segment_contact<S: Simd>(
     let (from, shortest) = match edges {
         Some(edges) if edges.is_box() => {
             let of_box = if finish.relaxation < 1.0 { 0.0 } else { NEAREST_OF_BOX };
-            (F::splat(simd, of_box), F::splat(simd, SHORTEST))
+            let thin = link.length.simd_gt(2.0 * edges.half_thickness());
+            [of_box, SHORTEST].map(|of_thin| thin.select(F::splat(simd, of_thin), nearest)).into()
         }
         Some(edges) => {
             let thin = edges.is_rod_within(link.length * THIN_FOR_LEVER);
