@@ -84,8 +84,8 @@ impl Edges {
         self.side_in(simd, own(simd, &self.start, segment), deep)
     }
 
-    /// Returns which segments from `a` to `a + e` (world) pierced a thin box at the start of the substep, more than its
-    /// thickness away from its rim. A correction would have to take them around the rim.
+    /// Returns which segments from `a` to `a + e` (world) passed through the middle of a box at the start of the substep, more
+    /// than its thickness away from its rim. A correction would have to take them around the rim.
     ///
     /// ```text
     ///           ◯───╲
@@ -97,9 +97,8 @@ impl Edges {
         let (a, e) = own(simd, &self.start, segment);
         let (a, e) = ([a.x, a.y, a.z], [e.x, e.y, e.z]);
         let thin = (0..3).fold(0, |k, j| if self.half[j] < self.half[k] { j } else { k });
-        let (before, after) = (a[thin], a[thin] + e[thin]);
-        let outside = before.abs().min(after.abs()).simd_gt(self.half[thin]);
-        let mut pierced = (before * after).simd_lt(0.0) & outside;
+        let before = a[thin];
+        let mut pierced = (before * (before + e[thin])).simd_lt(0.0);
         for j in (0..3).filter(|&j| j != thin) {
             let place = a[j] - e[j] * (before / e[thin]);
             pierced &= place.abs().simd_lt(self.half[j] - 2.0 * self.half[thin]);

@@ -43,6 +43,9 @@ const NEAREST: f32 = 0.125;
 /// because [`relax`](super::relax) limits the speed of the outer end.
 const NEAREST_OF_BOX: f32 = 0.25;
 
+/// Length from which on a segment may pierce a box, over the thickness of the box [1].
+const LONG_FOR_BOX: f32 = 2.0;
+
 /// Shortest lever for corrections of the outer end at a thin box, or at a rod thinner than
 /// [`THIN_FOR_LEVER`], as a fraction of the segment [1]. The rest is left to the next substep.
 const SHORTEST: f32 = 0.25;
@@ -134,7 +137,8 @@ pub fn resolve_segment_contact<S: Simd>(
     // Corrections of a segment that goes through a thin box would throw it from side to side. It is left as it is until
     // the box is gone.
     if let Some(edges) = edges.filter(|edges| edges.is_box()) {
-        let pierced = may & edges.pierced_by(simd, (a - inner.displacement, old));
+        let long = link.length.simd_gt(LONG_FOR_BOX * 2.0 * edges.half_thickness());
+        let pierced = may & long & edges.pierced_by(simd, (a - inner.displacement, old));
         if pierced.any_true() {
             let row = &mut tile.segment_contacts[i][segment_contact::FORCE];
             store(pierced.select(zero, load(simd, row)), row);
