@@ -1,7 +1,7 @@
 //! Promise: thin and fast colliders hold back the hair that they touch. A rod of 1 mm radius, dragged at 0.02 to 1 m/s
-//! through hanging hair, holds back every strand, and so does a box 1 or 2 mm thick and 10 mm wide at 0.1 and 0.5
-//! m/s. Boxes 1 to 4 mm thick at 0.05 to 3 m/s lose at most 2 strands of 200, and the length of a thin
-//! box does not matter. Hair that falls on a rod of 1 mm radius lies over it. A rod that crosses 15 cm in one frame and stops holds its hair in the following frames.
+//! through hanging hair, holds back every strand, and so does a box 1 to 4 mm thick at 0.05 to 3 m/s, however long it is.
+//! Hair that falls on a rod of 1 mm radius lies over it. A rod that crosses 15 cm in one frame and stops holds its hair in
+//! the following frames.
 
 use glam::{Mat3, Vec3};
 use hairspring::{
@@ -105,25 +105,13 @@ fn a_thin_box_holds_back_hair() {
             for speed in [0.05, 0.1, 0.2, 0.5, 1.0, 3.0] {
                 let held = drag(&shape, speed, 20, 200);
                 println!("{thickness} × {width} m, {speed} m/s: {held} of 200");
-                if held < 198 {
+                if held < 200 {
                     failures.push(format!("{thickness} × {width} m, {speed} m/s: {held} of 200"));
                 }
             }
         }
     }
     assert!(failures.is_empty(), "{failures:#?}");
-}
-
-#[test]
-fn a_box_1_or_2_mm_thick_and_10_mm_wide_holds_back_every_strand() {
-    for thickness in [0.002, 0.001] {
-        let half = Vec3::new(0.2, 0.005, 0.5 * thickness);
-        let shape = ColliderShape::Cuboid { center: Vec3::ZERO, half, axes: Mat3::IDENTITY };
-        for speed in [0.1, 0.5] {
-            let held = drag(&shape, speed, 20, 200);
-            assert_eq!(held, 200, "at {speed} m/s a box of {thickness} m does not hold back all strands");
-        }
-    }
 }
 
 #[test]
