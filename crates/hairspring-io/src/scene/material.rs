@@ -80,8 +80,9 @@ pub(super) fn of_groups(materials: usize, groups: usize) -> Option<String> {
     let differ = materials > 1 && materials != groups;
     let which =
         if materials > groups { "the last ones are not used" } else { "the last one is used for the rest" };
+    let noun = if groups == 1 { "group" } else { "groups" };
     differ
-        .then(|| format!("the groom has {groups} groups and `material` names {materials} materials; {which}"))
+        .then(|| format!("the groom has {groups} {noun} and `material` names {materials} materials; {which}"))
 }
 
 /// Returns a `[material.NAME]`: its preset, overridden by the given fields.

@@ -75,9 +75,10 @@ fn scene_files_give_the_scene_they_describe() {
     "#;
     let Loaded { value: scene, notes, .. } = read(folder.path(), text).unwrap();
     assert_eq!((scene.name.as_str(), scene.gravity), ("scene", Vec3::new(0.0, -1.6, 0.0)));
-    // The transform of the groom moves the roots away from the skin. The file has one group.
-    assert!(notes.len() == 2 && notes[0].contains("from the skin"), "{notes:?}");
-    assert!(notes[1].contains("1 groups and `material` names 2 materials"), "{notes:?}");
+    // The transform of the groom moves the roots away from the skin. The file has one group. Strand contact and a tie are both on.
+    assert!(notes.len() == 3 && notes[0].contains("from the skin"), "{notes:?}");
+    assert!(notes[1].contains("1 group and `material` names 2 materials"), "{notes:?}");
+    assert!(notes[2].contains("out of the ring of a tie"), "{notes:?}");
     let body = scene.body.as_ref().unwrap();
     assert_eq!((body.mesh.triangles.len(), body.mesh.positions.len()), (1, 3));
     assert_eq!(body.mesh.parts[0].color, Vec3::new(0.1, 0.2, 0.3));

@@ -124,7 +124,7 @@ fn materials_that_nothing_uses_are_named() {
     );
     let loaded = read(folder.path(), &text).unwrap();
     assert_eq!(notes(&loaded.notes, "no groom uses [material.b]"), 1, "{:?}", loaded.notes);
-    assert_eq!(notes(&loaded.notes, "1 groups and `material` names 2"), 1, "{:?}", loaded.notes);
+    assert_eq!(notes(&loaded.notes, "1 group and `material` names 2"), 1, "{:?}", loaded.notes);
     let loaded = read(folder.path(), &format!("{GROOM}material = \"wavy\"\n")).unwrap();
     assert_eq!(notes(&loaded.notes, "material"), 0, "{:?}", loaded.notes);
 }
