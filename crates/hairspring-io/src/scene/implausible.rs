@@ -1,5 +1,4 @@
-//! Settings of a scene that are allowed, but hardly what is meant: lengths in another unit than meters, and ties that strand
-//! contact keeps open.
+//! Settings that are valid but probably mistakes: lengths that are not in meters, and a tie together with strand contact.
 
 use super::file::SceneFile;
 use hairspring::forces::Manipulator;
@@ -9,7 +8,7 @@ const LONG: f32 = 3.0;
 /// Radius of a fiber above which it is reported [m]: four times that of a whisker.
 const THICK: f64 = 1e-3;
 
-/// Notes about lengths and radii that no hair has, and about ties of strands that support each other.
+/// Returns a note for each of these settings in the scene.
 pub(super) fn notes(scene: &SceneFile) -> Vec<String> {
     let grown = scene.groom.iter().filter_map(|groom| groom.grow.as_ref());
     let lengths = grown.map(|grow| grow.get_ref().growth().length).filter(|length| *length > LONG);
@@ -27,8 +26,7 @@ pub(super) fn notes(scene: &SceneFile) -> Vec<String> {
     lengths.chain(radii).chain(held_open(scene)).collect()
 }
 
-/// A note about ties in a scene with strand contact. The ring gathers the centers of all strands, and their contacts keep
-/// them apart.
+/// Returns a note if the scene has a tie and strand contact. A tie pulls strands together, and strand contact keeps them apart.
 fn held_open(scene: &SceneFile) -> Option<String> {
     let ties = scene.hand.iter().any(|hand| matches!(hand.tool, Manipulator::Tie(_)));
     (ties && scene.neighbours.on).then(|| {

@@ -134,8 +134,8 @@ pub fn resolve_segment_contact<S: Simd>(
         side.known &= link.length.simd_gt(2.0 * edges.half_thickness()) & !held;
         (edges, side)
     });
-    // Corrections of a segment that goes through a thin box would throw it from side to side. It is left as it is until
-    // the box is gone.
+    // A segment that has pierced a thin box gets no correction and no force. Corrections would push it to one side and then
+    // to the other.
     if let Some(edges) = edges.filter(|edges| edges.is_box()) {
         let long = link.length.simd_gt(LONG_FOR_BOX * 2.0 * edges.half_thickness());
         let pierced = may & long & edges.pierced_by(simd, (a - inner.displacement, old));
@@ -148,7 +148,8 @@ pub fn resolve_segment_contact<S: Simd>(
             }
         }
     }
-    // What is left near the inner end would be past the segment before the next solve.
+    // A place before the fraction `from` of the segment is left to the next solve. A thin rod, or a thin box in a refined
+    // substep, could have passed the segment by then, so `from` is 0 for these.
     let nearest = F::<S>::splat(simd, NEAREST);
     let (from, shortest) = match edges {
         Some(edges) if edges.is_box() => {

@@ -24,7 +24,7 @@ fn rod(radius: f32) -> ColliderShape {
     ColliderShape::Capsule { a: Vec3::X * -0.2, b: Vec3::X * 0.2, radius }
 }
 
-/// A bar of 40 cm, `height` and `thickness`, which it is dragged along.
+/// A bar of 40 cm × `height` × `thickness`. It is dragged in the direction of its thickness.
 fn bar(height: f32, thickness: f32) -> ColliderShape {
     ColliderShape::Cuboid {
         center: Vec3::ZERO,
