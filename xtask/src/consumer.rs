@@ -38,7 +38,7 @@ fn main() {
         let anchor = RigidTransform::IDENTITY;
         let colliders = [MovingCollider::at_rest(ball, anchor)];
         let roots = simulation.rigid_roots(anchor);
-        for _ in 0..10 {
+        for _ in 0..3 {
             simulation.step(&StepInput::new(1.0 / 60.0, anchor, &roots).with_colliders(&colliders));
         }
         let measure = simulation.measure(&colliders);

@@ -13,10 +13,6 @@ const AT_ONCE: usize = 2;
 /// Seed of the search in CI. It is fixed, so that only the commit decides whether CI passes.
 pub const ALWAYS_THE_SAME: Option<u32> = Some(1);
 
-/// No target simulates, so the solver's kernels are compiled for the oldest instruction set only.
-const ONE_INSTRUCTION_SET: &str =
-    "--cfg disable_dispatch_avx512 --cfg disable_dispatch_avx2 --cfg disable_dispatch_sse4_2";
-
 /// Builds all targets, fills their corpora with generated seeds, and runs each target for `seconds`. Without
 /// a `seed` every run is a different search.
 pub fn all(seconds: u32, seed: Option<u32>) -> Result<(), String> {
@@ -25,7 +21,7 @@ pub fn all(seconds: u32, seed: Option<u32>) -> Result<(), String> {
     run::cargo(&["build", "--release", "--workspace", "--example", "fuzz_seeds"], &[])?;
     let built = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from);
     run::program(&built.join("release/examples/fuzz_seeds"), &["fuzz/corpus"])?;
-    let unstable = [("RUSTC_BOOTSTRAP", "1"), ("RUSTFLAGS", ONE_INSTRUCTION_SET)];
+    let unstable = [("RUSTC_BOOTSTRAP", "1")];
     run::cargo(&["fuzz", "build", "-s", "none"], &unstable)?;
     let mut running: Vec<(String, Child)> = Vec::new();
     let mut failed = Vec::new();

@@ -149,6 +149,14 @@ impl Totals {
                 grouped(neighbours.crowded_segments)
             ));
         }
+        if neighbours.depth > neighbours.radius {
+            print_line(format_args!(
+                "pressed  strands overlap by up to {:.1} mm, at a contact radius of {:.1} mm: they have less space than at rest, \
+                 and may vibrate; a smaller neighbours.radius lets them rest",
+                1e3 * neighbours.depth,
+                1e3 * neighbours.radius
+            ));
+        }
         let stages: Vec<String> = self.stages().iter().map(|(name, ms)| format!("{name} {ms:.1}")).collect();
         print_line(format_args!("ms/frame {}", stages.join(", ")));
         if self.sent > 0 {
@@ -205,6 +213,7 @@ impl Totals {
             "coils_as_rods": stage.start().coils,
             "same_strands": stage.neighbours().unwrap_or_default().merged_strands,
             "crowded_segments": stage.neighbours().unwrap_or_default().crowded_segments,
+            "overlap_m": stage.neighbours().unwrap_or_default().depth,
             "substeps": self.substeps,
             "threads": rayon::current_num_threads(),
             "simd": stage.instruction_set(),

@@ -1,8 +1,8 @@
 //! Promise: the copies that a node of a glTF file draws of its mesh (`EXT_mesh_gpu_instancing`) are all read, where they are drawn.
 
 use crate::{
+    gltf_checks::{assert_noted_once, read, refused, skin, weights},
     gltf_file::{GltfFile, TETRAHEDRON},
-    gltf_files_of_exporters_are_read::{assert_noted_once, read, refused, skin, weights},
 };
 use glam::{Affine3A, Quat, Vec3};
 use hairspring_io::gltf;

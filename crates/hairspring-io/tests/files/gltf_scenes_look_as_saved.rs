@@ -2,8 +2,8 @@
 //! in its scene only, and without hidden objects.
 
 use crate::{
+    gltf_checks::{assert_noted_once, read, read_tetrahedron, refused, skin, weights},
     gltf_file::{GltfFile, TETRAHEDRON},
-    gltf_files_of_exporters_are_read::{assert_noted_once, read, read_tetrahedron, refused, skin, weights},
 };
 use glam::{Affine3A, Quat, Vec3};
 use hairspring_io::gltf;

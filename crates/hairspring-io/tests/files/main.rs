@@ -7,12 +7,15 @@ mod gltf_file;
 #[path = "../common/samples.rs"]
 mod samples;
 
+mod gltf_checks;
+
 mod bad_files_are_refused;
 mod bodies_have_the_unit_of_their_shape_and_hair;
 mod comments_begin_after_a_space;
 mod errors_name_the_line_at_any_line_end;
 mod example_meshes_are_made_by_code;
 mod files_of_another_kind_are_named;
+mod gltf_animations_move_what_they_name;
 mod gltf_copies_are_where_they_are_drawn;
 mod gltf_files_of_exporters_are_read;
 mod gltf_files_that_break_the_rules_are_reported;
@@ -20,6 +23,7 @@ mod gltf_lines_are_strands;
 mod gltf_morph_targets_move_the_body;
 mod gltf_motions_keep_their_keys;
 mod gltf_scenes_look_as_saved;
+mod gltf_skins_stay_together;
 mod grooms_fit_the_body;
 mod grooms_round_trip;
 mod headless_bake_runs;
@@ -34,3 +38,4 @@ mod real_grooms_stay_on_real_heads;
 mod strands_without_a_place_are_reported;
 mod tfx_headers_are_checked;
 mod units_of_motions_give_a_person;
+mod vrm_avatars_look_ahead;

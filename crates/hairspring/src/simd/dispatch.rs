@@ -1,9 +1,13 @@
 //! Dispatch on instruction sets: kernels that are written once are compiled for each instruction set, and the
 //! right one is chosen at run time.
+//!
+//! Compiling the kernels takes most of the build time. Builds that need not be fast have them for one instruction set
+//! ([`only`]): builds without optimization (`unoptimized`, see `build.rs`), such as an engine's first one, and the
+//! library's own unit tests. Tests outside the library check that the results agree on every instruction set.
 
 /// Runs an expression with the instructions of `level`, in single precision; see
 /// [`fearless_simd::dispatch!`].
-#[cfg(not(all(test, target_arch = "x86_64")))]
+#[cfg(not(all(any(test, unoptimized), target_arch = "x86_64")))]
 macro_rules! dispatch {
     ($level:expr, $simd:pat => $op:expr) => {
         fearless_simd::dispatch!($level, native => {
@@ -13,45 +17,41 @@ macro_rules! dispatch {
     };
 }
 
-/// Runs an expression in single precision in the library's own unit tests, with the instructions of AVX2 whatever the
-/// level. Compiling the kernels takes most of the build time, and a test of their results needs them only once. Tests
-/// outside the library check that the results agree on every instruction set.
-#[cfg(all(test, target_arch = "x86_64"))]
+/// Runs an expression in single precision, with the only instructions of this build.
+#[cfg(all(any(test, unoptimized), target_arch = "x86_64"))]
 macro_rules! dispatch {
     ($level:expr, $simd:pat => $op:expr) => {{
-        let level: fearless_simd::Level = $level;
-        let avx2 =
-            level.as_avx2().expect("a processor with AVX2, which the library's unit tests are compiled for");
-        let $simd = crate::simd::lanes::Single(avx2);
-        fearless_simd::Simd::vectorize(
-            avx2,
-            #[inline(always)]
-            || $op,
-        )
+        let native = crate::simd::dispatch::only($level);
+        crate::simd::dispatch::whole_tile!(native, $simd => $op)
     }};
 }
 
 /// Runs an expression in double precision, once for each half of a tile. Compiled for AVX2 and SSE2 only,
 /// because AVX-512 offers no advantage for four numbers.
-#[cfg(all(target_arch = "x86_64", not(one_lane)))]
+#[cfg(all(target_arch = "x86_64", not(one_lane), not(any(test, unoptimized))))]
 macro_rules! dispatch_double {
     ($level:expr, $simd:pat => $op:expr) => {{
         let level: fearless_simd::Level = $level;
-        let avx2 = level.as_avx2();
-        if let Some(native) = avx2 {
+        if let Some(native) = level.as_avx2() {
             crate::simd::dispatch::both_halves!(native, $simd => $op);
-        }
-        // The library's own unit tests are compiled for AVX2 only.
-        #[cfg(not(test))]
-        if let (None, Some(native)) = (avx2, level.as_sse2()) {
+        } else if let Some(native) = level.as_sse2() {
             crate::simd::dispatch::both_halves!(native, $simd => $op);
         }
     }};
 }
 
+/// Runs an expression in double precision, once for each half of a tile, with the only instructions of this build.
+#[cfg(all(any(test, unoptimized), target_arch = "x86_64"))]
+macro_rules! dispatch_double {
+    ($level:expr, $simd:pat => $op:expr) => {{
+        let native = crate::simd::dispatch::only($level);
+        crate::simd::dispatch::both_halves!(native, $simd => $op);
+    }};
+}
+
 /// Runs an expression for the integrators that exist for comparison, in double precision if `$double`. Compiled
 /// for AVX2 and SSE2 only, to keep the build short.
-#[cfg(all(target_arch = "x86_64", not(one_lane), not(test)))]
+#[cfg(all(target_arch = "x86_64", not(one_lane), not(any(test, unoptimized))))]
 macro_rules! dispatch_comparison {
     ($level:expr, $double:expr, $simd:pat => $op:expr) => {{
         let level: fearless_simd::Level = $level;
@@ -65,9 +65,9 @@ macro_rules! dispatch_comparison {
     }};
 }
 
-/// Runs an expression for the integrators that exist for comparison, on other processors and in the library's own
-/// unit tests.
-#[cfg(not(all(target_arch = "x86_64", not(one_lane), not(test))))]
+/// Runs an expression for the integrators that exist for comparison, on other processors and in builds for one
+/// instruction set.
+#[cfg(not(all(target_arch = "x86_64", not(one_lane), not(any(test, unoptimized)))))]
 macro_rules! dispatch_comparison {
     ($level:expr, $double:expr, $simd:pat => $op:expr) => {{
         if $double {
@@ -79,7 +79,7 @@ macro_rules! dispatch_comparison {
 }
 
 /// Runs an expression with these instructions in single precision.
-#[cfg(all(target_arch = "x86_64", not(one_lane), not(test)))]
+#[cfg(all(target_arch = "x86_64", not(one_lane)))]
 macro_rules! whole_tile {
     ($native:ident, $simd:pat => $op:expr) => {{
         let $simd = crate::simd::lanes::Single($native);
@@ -129,8 +129,18 @@ macro_rules! dispatch_double {
     };
 }
 
+/// The instructions of a build without optimization, whatever the level: every processor has them.
+#[cfg(all(unoptimized, target_arch = "x86_64"))]
+pub(crate) fn only(level: fearless_simd::Level) -> fearless_simd::x86::Sse2 {
+    level.as_sse2().expect("SSE2 is part of x86-64")
+}
+
+/// The instructions of the library's own unit tests, whatever the level.
+#[cfg(all(test, not(unoptimized), target_arch = "x86_64"))]
+pub(crate) fn only(level: fearless_simd::Level) -> fearless_simd::x86::Avx2 {
+    level.as_avx2().expect("a processor with AVX2, which the library's unit tests are compiled for")
+}
+
 #[cfg(all(target_arch = "x86_64", not(one_lane)))]
-pub(crate) use both_halves;
-#[cfg(all(target_arch = "x86_64", not(one_lane), not(test)))]
-pub(crate) use whole_tile;
+pub(crate) use {both_halves, whole_tile};
 pub(crate) use {dispatch, dispatch_comparison, dispatch_double};

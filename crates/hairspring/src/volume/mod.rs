@@ -194,8 +194,7 @@ impl Volume {
         let extent = Extent::of(&tiles, &GridTransform::new(&at.anchor, 1.0), Vec3::ZERO);
         let reach = rest::reach(extent.roots.into(), at.length);
         let size = (reach.1 - reach.0).max(Vec3::splat(requested));
-        let mut cell = requested.max((size.element_product() / (0.5 * MAX_NODES)).cbrt());
-        // If hair is in two places far apart, most of the grid is the ring.
+        let mut cell = requested;
         let farthest = reach.0.abs().max(reach.1.abs()).max_element();
         while (size / cell + RING_NODES + 1.0).element_product() > MAX_NODES || farthest / cell > MAX_DISTANCE
         {
