@@ -6,6 +6,9 @@ use hairspring_view::Timings;
 use serde_json::{Map, Value, json};
 use std::time::{Duration, Instant};
 
+/// Overlap of strands in contact, relative to their radius, above which it is reported [1].
+const PRESSED: f32 = 0.5;
+
 /// Sums over a run.
 pub struct Totals {
     began: Instant,
@@ -149,7 +152,7 @@ impl Totals {
                 grouped(neighbours.crowded_segments)
             ));
         }
-        if neighbours.depth > neighbours.radius {
+        if neighbours.depth > PRESSED * neighbours.radius {
             print_line(format_args!(
                 "pressed  strands overlap by up to {:.1} mm, at a contact radius of {:.1} mm: they have less space than at rest, \
                  and may vibrate; a smaller neighbours.radius lets them rest",

@@ -39,10 +39,10 @@
 //! # Limitations
 //! - A strand does not collide with itself.
 //! - Follow hairs are moved by their guides only.
-//! - Where strands are compressed beyond the available space, they overlap and vibrate, at up to several m/s. A
-//!   bundle that folds over at its roots is such a place, because the default radius fills the space at rest: with a
-//!   fifth of that radius it comes to rest. Loads carry the energy: without them (`LOAD_GAIN` 0) such bundles move 30 to
-//!   100 times slower, but contacts do not hold a strand that lies over another.
+//! - Where strands are compressed beyond the available space, they overlap and vibrate. A bundle that folds over at
+//!   its roots is such a place, because the default radius fills the space at rest; with a fifth of that radius it
+//!   comes to rest. The carried loads feed the vibration, and contacts need them to hold a strand that lies over
+//!   another.
 //! - A narrow tie does not gather them, because they support each other.
 
 mod along;

@@ -96,8 +96,8 @@ pub(crate) struct Volume {
     settings: settings::Volume,
     /// Edge of a cell [m].
     cell: f32,
-    /// Whether the cell is larger than requested, to bound the number of cells.
-    grown: bool,
+    /// See [`VolumeReport::requested_cell`].
+    requested: f32,
     /// The box that hair can reach with its roots at rest, in the anchor's space [m].
     reach: (Vec3, Vec3),
     /// Length of the longest strand [m].
@@ -129,8 +129,9 @@ pub(crate) struct Volume {
 pub struct VolumeReport {
     /// Edge of a cell [m].
     pub cell: f32,
-    /// Whether that is larger than requested, to bound the number of cells.
-    pub cell_enlarged: bool,
+    /// Edge of a cell in the settings, or the one that suits the density of the hair [m]. `cell` is larger if there would
+    /// be more than two million cells.
+    pub requested_cell: f32,
     /// Number of grid nodes in the last interval.
     pub nodes: usize,
     /// Volume of the hair at the start of the last interval relative to that at rest [1]. The volume is
@@ -205,7 +206,7 @@ impl Volume {
         let mut volume = Self {
             settings: *settings,
             cell,
-            grown: cell > requested,
+            requested,
             reach,
             length: at.length,
             spacing: rest_spacing.spacing,
@@ -259,7 +260,7 @@ impl Volume {
         let nodes = self.field.bounds.nodes();
         VolumeReport {
             cell: self.cell,
-            cell_enlarged: self.grown,
+            requested_cell: self.requested,
             nodes,
             volume_ratio: self.taken_up[1] / self.taken_up[0],
         }

@@ -304,7 +304,7 @@ fn two_bundles_apart_on_a_diagonal_take_a_bounded_grid_and_rest_as_one_does() {
                 .for_each(|row| row.0.iter_mut().for_each(|x| *x += 3.0));
         }
         let volume = bundle.volume(method);
-        assert!(volume.report().cell_enlarged);
+        assert!(volume.report().cell > volume.report().requested_cell);
         let most = super::MAX_NODES as usize;
         let nodes = volume.sums.iter().map(|sums| sums.rest_volumes.capacity()).max().unwrap();
         assert!(nodes <= most, "{method:?}: {nodes} nodes");

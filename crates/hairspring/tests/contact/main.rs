@@ -6,6 +6,7 @@ mod contact_methods_keep_hair_out;
 mod contact_works_at_any_scale;
 mod distance_field_is_exact_near_the_surface;
 mod fast_colliders_take_hair_along;
+mod folded_bundles_rest_with_a_small_contact_radius;
 mod follow_hairs_stay_out_of_sheets;
 mod hair_deep_inside_a_mesh_comes_to_rest;
 mod hair_over_an_edge_comes_to_rest;
