@@ -165,8 +165,8 @@ fn violent_motion_leaves_no_trace() {
 fn violent_motion_with_a_head_and_volume_leaves_no_trace() {
     let all = cases(&[1.0]);
     let volumes = [VolumeMethod::Density, VolumeMethod::Incompressible].map(|method| {
-        // Few strands that reach far need many of the default cells: only the first case has them.
-        let cells = |k: usize| if k == 0 { None } else { Some(0.05) };
+        // The first preset with the default cells, the others with large ones.
+        let cells = |k: usize| if k < Model::ALL.len() { None } else { Some(0.05) };
         let volume = move |k: usize| Volume { method, cell: cells(k), ..Volume::default() };
         all.iter().enumerate().map(move |(k, material)| (vec![material.clone()], volume(k)))
     });
