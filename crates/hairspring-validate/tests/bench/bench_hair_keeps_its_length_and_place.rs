@@ -103,7 +103,7 @@ const FORGOTTEN: f32 = 0.5;
 /// on a head, a ball of 20 cm. Without one, strands do not interact.
 fn shaken(
     what: &str,
-    (materials, volume): (&[Material], &Volume),
+    (materials, method): (&[Material], VolumeMethod),
     gravity: f32,
     frames: impl Fn(u32) -> f32,
     motion: impl Fn(f32) -> RigidTransform,
@@ -121,7 +121,7 @@ fn shaken(
     let count = groom.strand_count();
     let head = ColliderShape::Sphere { center: Vec3::Y * -HEAD, radius: HEAD };
     let at_rest = translation(root);
-    let alone = volume.method == VolumeMethod::Off;
+    let alone = method == VolumeMethod::Off;
     let rest = MovingCollider::at_rest(head.clone(), at_rest).end_pose();
     let mut simulation = Simulation::builder(groom)
         .materials(materials)
@@ -131,7 +131,7 @@ fn shaken(
         .colliders_at_rest(if alone { &[] } else { std::slice::from_ref(&rest) })
         .build()
         .unwrap();
-    simulation.set_volume(volume).unwrap();
+    simulation.set_volume(&Volume { method, ..Volume::default() }).unwrap();
     let mut before = at_rest;
     let (mut time, mut frame) = (0.0, 0);
     while time < VIOLENCE + FORGOTTEN {
@@ -145,7 +145,7 @@ fn shaken(
         let (roots, air) = (vec![pose; count], Air::default());
         let colliders: &[MovingCollider] = if alone { &[] } else { &body };
         let report = simulation.step(&StepInput { dt, anchor: pose, roots: &roots, colliders, air });
-        assert_eq!(report.reset_strands, 0, "{what}, {volume:?}, {time} s: one of {materials:?}");
+        assert_eq!(report.reset_strands, 0, "{what}, {method:?}, {time} s: one of {materials:?}");
     }
     simulation
 }
@@ -158,19 +158,14 @@ fn violent_motion_leaves_no_trace() {
     let all = cases(&[1e-4, 1.0, 1e4]);
     // Materials of one model share tiles of eight strands, which takes a third of the time.
     let with_model = |model: Model| all.iter().filter(|material| material.model == model).cloned().collect();
-    violence(Model::ALL.map(|model| (with_model(model), Volume::default())).into());
+    violence(Model::ALL.map(|model| (with_model(model), VolumeMethod::Off)).into());
 }
 
 #[test]
 fn violent_motion_with_a_head_and_volume_leaves_no_trace() {
-    let all = cases(&[1.0]);
-    let volumes = [VolumeMethod::Density, VolumeMethod::Incompressible].map(|method| {
-        // The first preset with the default cells, the others with large ones.
-        let cells = |k: usize| if k < Model::ALL.len() { None } else { Some(0.05) };
-        let volume = move |k: usize| Volume { method, cell: cells(k), ..Volume::default() };
-        all.iter().enumerate().map(move |(k, material)| (vec![material.clone()], volume(k)))
-    });
-    violence(volumes.into_iter().flatten().collect());
+    let methods = [VolumeMethod::Density, VolumeMethod::Incompressible];
+    let each = |m: Material| methods.map(|method| (vec![m.clone()], method));
+    violence(cases(&[1.0]).into_iter().flat_map(each).collect());
 }
 
 /// Every preset with every model and these multiples of its stiffness.
@@ -182,7 +177,7 @@ fn cases(stiffnesses: &[f32]) -> Vec<Material> {
         .collect()
 }
 
-fn violence(cases: Vec<(Vec<Material>, Volume)>) {
+fn violence(cases: Vec<(Vec<Material>, VolumeMethod)>) {
     let even = |_: u32| FRAME;
     // From 1 to 100 ms.
     let uneven = |f: u32| 0.001 + 0.099 * ((f.wrapping_mul(0x9E37_79B9) >> 8) as f32 / (1 << 24) as f32);
@@ -191,10 +186,10 @@ fn violence(cases: Vec<(Vec<Material>, Volume)>) {
     let spin =
         |t: f32| RigidTransform { rotation: Quat::from_rotation_y((t * 720.0 % 360.0).to_radians()), ..REST };
     let shake = |t: f32| translation(Vec3::X * (0.2 * (std::f32::consts::TAU * 2.0 * t).sin()));
-    cases.into_par_iter().for_each(|(materials, volume)| {
+    cases.into_par_iter().for_each(|(materials, method)| {
         let check = |what, gravity, frames: &dyn Fn(u32) -> f32, motion: &dyn Fn(f32) -> RigidTransform| {
-            let end = shaken(what, (&materials, &volume), gravity, frames, motion).measure(&[]);
-            assert!(end.stretch_max < 0.011, "{what}, {volume:?}: {end:?} of {materials:?}");
+            let end = shaken(what, (&materials, method), gravity, frames, motion).measure(&[]);
+            assert!(end.stretch_max < 0.011, "{what}, {method:?}: {end:?} of {materials:?}");
         };
         check("teleport", 9.81, &even, &teleport);
         check("spin", 9.81, &even, &spin);
