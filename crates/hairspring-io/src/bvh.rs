@@ -47,8 +47,8 @@ const USUAL_RATES: std::ops::RangeInclusive<f64> = 5.0..=500.0;
 /// Rotations are applied in the order in which the file lists them: the first listed is the outermost.
 ///
 /// # Errors
-/// Returns an error if the hierarchy is not closed, if a line of frames has too few numbers, or if the frame
-/// time is not above 0.
+/// Returns an error if the hierarchy is not closed, if the line of a frame has too few or too many numbers, or if the
+/// frame time is not above 0.
 pub fn parse(data: &[u8]) -> Result<Motion, Problem> {
     read(data, None).map(|read| read.motion)
 }
@@ -72,7 +72,11 @@ fn read(data: &[u8], rate: Option<f64>) -> Result<Read, Problem> {
         ));
     }
     let width: usize = channels.iter().map(Vec::len).sum();
-    let left = words.words_left();
+    let lines = words.lines_left();
+    if let Some(problem) = uneven_line(&lines, named, width) {
+        return Err(problem);
+    }
+    let left: usize = lines.iter().map(|(_, words)| words).sum();
     // The skeleton of a file without channels stands still for as long as its size allows.
     let held = left.checked_div(width).unwrap_or(named.min(text.len()));
     // The lines are counted if the header names no frames.
@@ -99,6 +103,34 @@ fn read(data: &[u8], rate: Option<f64>) -> Result<Read, Problem> {
     }
     let clip = Clip { name: String::new(), rate: rate_used, joint_count: joints.len(), samples };
     Ok(Read { motion: Motion { joints, clip }, ends, notes })
+}
+
+/// Returns the problem of a line that has another number of words than the skeleton has channels (`width`), if each frame
+/// has a line of its own. Some files wrap a frame over several lines. `lines` are those of the frames, each with its number
+/// of words, and `named` is the number of frames in the header.
+fn uneven_line(lines: &[(usize, usize)], named: usize, width: usize) -> Option<Problem> {
+    let (_, first) = *lines.first()?;
+    if width == 0 {
+        return None;
+    }
+    let words: usize = lines.iter().map(|(_, words)| words).sum();
+    let same = lines.len() > 1 && lines.iter().all(|(_, words)| *words == first);
+    let divides = width.is_multiple_of(first) || first.is_multiple_of(width);
+    let fitting = lines.iter().filter(|(_, words)| *words == width).count();
+    let wraps = words == named.saturating_mul(width) || (2 * fitting <= lines.len() && (divides || !same));
+    if lines.len() != named && wraps {
+        return None;
+    }
+    let used = if named == 0 { lines } else { &lines[..named.min(lines.len())] };
+    // A shorter last line is that of a file that is cut short.
+    let cut = |k: usize, words: usize| k > 0 && k + 1 == lines.len() && words < width;
+    let uneven = used.iter().enumerate().find(|(k, (_, words))| *words != width && !cut(*k, *words));
+    uneven.map(|(_, (line, words))| {
+        let text = format!(
+            "a frame has {words} numbers here, and the skeleton has {width} channels; export the motion again"
+        );
+        Problem::line(*line, text)
+    })
 }
 
 /// Describes a header that names another number of frames than the file holds, and what follows the last frame.

@@ -14,7 +14,7 @@ pub(crate) fn pick_clip(clips: &[Clip], name: Option<&str>) -> Result<usize, Str
         None => (!clips.is_empty()).then_some(0),
     };
     found.ok_or_else(|| {
-        let known: Vec<&str> = clips.iter().map(|c| c.name.as_str()).collect();
+        let known = clip_names(clips);
         match name {
             Some(name) => format!("there is no motion called {name:?}; available: {}", list(&known)),
             None => "the file holds no motion; export it with its animations, or name another file".into(),
@@ -30,25 +30,30 @@ pub(crate) fn first_note(clips: &[Clip], name: Option<&str>) -> Option<String> {
             "the file has {} motions, and the first, {:?}, is used; set `name` to use another: {}",
             clips.len(),
             first.name,
-            names(others)
+            names(&clip_names(others))
         )
     })
 }
 
-/// A note if the clips of a body are not played.
-pub(crate) fn unplayed_note(clips: &[Clip]) -> Option<String> {
-    (!clips.is_empty()).then(|| {
-        let (motions, are) = if clips.len() == 1 { ("motion", "is") } else { ("motions", "are") };
-        let (count, names) = (clips.len(), names(clips));
-        format!("the file has {count} {motions} ({names}), which {are} not played; add [clip] to play one")
+/// A note if a file has `motions`, by their names, that are not played. `end` is the end of the sentence: what is played.
+pub(crate) fn unplayed_note(motions: &[&str], end: &str) -> Option<String> {
+    (!motions.is_empty()).then(|| {
+        let (word, are) = if motions.len() == 1 { ("motion", "is") } else { ("motions", "are") };
+        let (count, names) = (motions.len(), names(motions));
+        format!("the file has {count} {word} ({names}), which {are} not played{end}")
     })
 }
 
-/// The names of clips, up to a number.
-fn names(clips: &[Clip]) -> String {
-    let listed: Vec<&str> = clips.iter().take(LISTED).map(|clip| clip.name.as_str()).collect();
-    match clips.len() - listed.len() {
-        0 => list(&listed),
-        more => format!("{} and {more} more", list(&listed)),
+/// The names of clips.
+pub(crate) fn clip_names(clips: &[Clip]) -> Vec<&str> {
+    clips.iter().map(|clip| clip.name.as_str()).collect()
+}
+
+/// A list of names, up to a number.
+fn names(all: &[&str]) -> String {
+    let listed = &all[..all.len().min(LISTED)];
+    match all.len() - listed.len() {
+        0 => list(listed),
+        more => format!("{} and {more} more", list(listed)),
     }
 }

@@ -209,7 +209,7 @@ fn check_groom(path: &Path, groom: &Groom) -> Result<()> {
 ///
 /// # Errors
 /// Returns an error if the file is missing, unreadable, of another kind or malformed, or if its mesh has no
-/// triangles.
+/// triangles or no size.
 pub fn read_body(path: &Path, options: &ReadOptions) -> Result<Loaded<Character>> {
     read_mesh(path, options, UnitHint::None)
 }
@@ -231,6 +231,13 @@ pub(crate) fn read_mesh(path: &Path, options: &ReadOptions, hint: UnitHint<'_>) 
         let notes = loaded.notes.iter().filter(|_| loaded.format == Format::Gltf);
         let noted: String = notes.map(|note| format!(" ({note})")).collect();
         return Err(Problem::whole(format!("{text}{noted}")).in_file(path));
+    }
+    let mesh = &loaded.value.body.mesh;
+    let mut corners = mesh.triangles.iter().flatten().map(|v| mesh.positions[*v as usize]);
+    let first = corners.next();
+    if corners.all(|corner| Some(corner) == first) {
+        let text = "all vertices of its triangles are at one place, so it has no size; export it again";
+        return Err(Problem::whole(text).in_file(path));
     }
     Ok(loaded)
 }

@@ -64,10 +64,17 @@ impl<'a> Words<'a> {
         self.words.by_ref().collect()
     }
 
-    /// Counts the words from here to the end.
-    pub(crate) fn words_left(&self) -> usize {
+    /// Returns the lines from here to the end that have words: the line, counted from 1, and the number of its words.
+    pub(crate) fn lines_left(&self) -> Vec<(usize, usize)> {
         let mut rest = self.clone();
-        std::iter::from_fn(|| rest.word()).count()
+        let mut found: Vec<(usize, usize)> = Vec::new();
+        while rest.word().is_some() {
+            match found.last_mut() {
+                Some((line, words)) if *line == rest.line => *words += 1,
+                _ => found.push((rest.line, 1)),
+            }
+        }
+        found
     }
 
     /// Reads the next word, which must be `wanted`, ignoring case.

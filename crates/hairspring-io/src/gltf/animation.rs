@@ -2,7 +2,7 @@
 
 use super::{
     accessor::{Buffers, components},
-    given,
+    animation_name,
     json::{Animation, Document, Interpolation, Path},
     late::Late,
     morph::{self, ClipWeights, Morphs, Object},
@@ -10,7 +10,7 @@ use super::{
     scales::Scales,
     skeleton::Skeleton,
 };
-use crate::{Problem, bytes::with_room, motion::MAX_SAMPLES, text};
+use crate::{Problem, bytes::with_room, motion::MAX_SAMPLES};
 use glam::{Quat, Vec3, Vec4};
 use hairspring::body::{Clip, Trs};
 use std::{
@@ -79,7 +79,7 @@ pub(super) fn clips(
     let most = buffers.size().saturating_mul(SAMPLES_PER_BYTE).saturating_add(SAMPLES).min(MAX_SAMPLES);
     let mut samples_so_far = 0usize;
     for (index, animation) in document.animations.iter().enumerate() {
-        let name = given(&animation.name).map_or_else(|| format!("animation{index}"), text::name);
+        let name = animation_name((index, animation));
         let mut weights = ClipWeights::default();
         let tracks =
             reader.tracks((animation, &name), skeleton, (&mut morphs, &mut weights), &mut left_out)?;

@@ -3,7 +3,7 @@
 use super::{
     HALF_TURN,
     accessor::{Buffers, accessor, colors, components},
-    given, instances,
+    animation_name, given, instances,
     json::{Document, Node, Primitive},
     nodes::{Walk, local, walk},
     primitive::place,
@@ -12,6 +12,7 @@ use super::{
 use crate::{
     Place, Problem,
     chains::{self, Chains},
+    clip_choice::unplayed_note,
     strands::Read,
     text,
     units::FileUnits,
@@ -67,6 +68,9 @@ pub(super) fn read(document: &Document, buffers: &Buffers<'_>) -> Result<Read, P
         build.groom.points.iter_mut().for_each(|p| *p = HALF_TURN * *p);
         notes.push(turned_note());
     }
+    let motions: Vec<String> = document.animations.iter().enumerate().map(animation_name).collect();
+    let motions: Vec<&str> = motions.iter().map(String::as_str).collect();
+    notes.extend(unplayed_note(&motions, " on the strands; they follow the [body]"));
     build.finish(notes)
 }
 

@@ -22,13 +22,14 @@ mod scales;
 mod skeleton;
 mod uri;
 
-use crate::{Problem, strands::Read, units::apply_to_body};
+use crate::{Problem, strands::Read, text, units::apply_to_body};
 use glam::{Affine3A, Quat};
 use hairspring::{
     body::{Body, Clip, Skin},
     groom::Groom,
 };
 use hairspring_scene::VertexCache;
+use json::Animation;
 pub use morph::Morphs;
 use skeleton::Skeleton;
 
@@ -106,6 +107,11 @@ fn invertible(m: Affine3A) -> Option<Affine3A> {
     let determinant = m.matrix3.determinant();
     (m.is_finite() && determinant.is_finite() && determinant.abs() > 1e-20 && m.inverse().is_finite())
         .then_some(m)
+}
+
+/// Returns the name of the animation with this index as the program shows it.
+fn animation_name((index, animation): (usize, &Animation)) -> String {
+    given(&animation.name).map_or_else(|| format!("animation{index}"), text::name)
 }
 
 /// Returns a name that is not blank.

@@ -7,18 +7,23 @@ use super::{
     sentence::unknown,
 };
 use crate::{
-    Character, ReadOptions, Result, load,
+    Character, ReadOptions, Result,
+    clip_choice::{clip_names, unplayed_note},
+    load,
     load::read_mesh,
     makehuman, obj,
     units::{self, UnitHint, WholeBody},
 };
 use glam::{Affine3A, Mat3A, Vec3};
-use hairspring::body::{Body, Joint, Mesh, Part, Skin};
+use hairspring::body::{Body, Clip, Joint, Mesh, Part, Skin};
 
 impl Reader<'_> {
     /// Reads a `[body]` or `[collision]` with its additional files. `what` names it in error messages.
     pub(super) fn body(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
         let mut character = self.piece(named, what)?;
+        if what != "body" {
+            self.note_unplayed(named, &character.clips, what);
+        }
         if let Some(cache) = &named.vertex_cache {
             if what != "body" {
                 let text = "`vertex_cache` is for [body] only; other meshes move with its joints".into();
@@ -36,11 +41,25 @@ impl Reader<'_> {
                 let note = "its animated morph targets are left out; name the file as that of [body] itself";
                 self.note(&self.resolve(&file.file), vec![note.into()]);
             }
+            self.note_unplayed(file, &clips, what);
             let carrier =
                 file.joint.as_deref().map(|name| self.joint(&character.body, name, file)).transpose()?;
             join(&mut character.body, piece, carrier);
         }
         Ok(character)
+    }
+
+    /// Adds a note if a file has motions, of which only those of the body's own file and of [clip] are played.
+    fn note_unplayed(&mut self, named: &BodyFile, clips: &[Clip], what: &str) {
+        let path = self.resolve(&named.file);
+        if self.played.contains(&path) {
+            return;
+        }
+        let end = match what {
+            "prop" => "; the [[prop]] moves by its `keys`",
+            _ => "; the mesh moves with the joints of the [body]",
+        };
+        self.note(&path, unplayed_note(&clip_names(clips), end).into_iter().collect());
     }
 
     /// Reads one file of a body.

@@ -80,6 +80,9 @@ impl Reader<'_> {
             Some(named) => self.builtin(named)?,
             None => Scene::default(),
         };
+        let body_file = file.body.iter().map(|body| &body.file);
+        let moving = body_file.chain(file.clip.iter().filter_map(|clip| clip.file.as_ref()));
+        self.played = moving.map(|name| self.resolve(name)).collect();
         let character = match (&file.body, made.body.take()) {
             (Some(named), _) => {
                 // Its unit may be known already, for hulls.
@@ -104,6 +107,10 @@ impl Reader<'_> {
         self.note_namesakes(file, scene, whole.as_ref().map_or(&[], |body| &body.joints));
         for (groom, named) in scene.grooms[grown..].iter_mut().zip(&file.groom) {
             groom.groom = self.groom(named, &groom.materials, whole.as_ref())?;
+        }
+        if let (Some(named), Some(collision)) = (&file.collision, &collision) {
+            let body = character.as_ref().map(|character| &character.body.mesh);
+            self.note_collision(named, &collision.body.mesh, body, &scene.grooms);
         }
         let (body, clip, cache) = self.motion(file, character)?;
         // The built-in collision mesh has the joints of the built-in body, unless the body is now one piece.

@@ -1,4 +1,5 @@
-//! Settings that are valid but probably mistakes: lengths that are not in meters, and a tie together with strand contact.
+//! Settings that are valid but probably mistakes: values in another unit than that of the field, and a tie together with
+//! strand contact.
 
 use super::file::SceneFile;
 use hairspring::forces::Manipulator;
@@ -8,6 +9,15 @@ const LONG: f32 = 3.0;
 /// Radius of a fiber above which it is reported [m]: four times that of a whisker.
 const THICK: f64 = 1e-3;
 
+/// Gravity above which it is reported [m/s²]: ten times that of the Earth.
+const STRONG: f32 = 100.0;
+/// Density of a fiber below which it is reported [kg/m³]. Hair has 1300, and 1.3 if it is given in g/cm³.
+const LIGHT: f64 = 100.0;
+/// Young's modulus below which it is reported [Pa], that of rubber. Hair has 3.9e9, and 3.9 if it is given in GPa.
+const SOFT: f64 = 1e6;
+/// Thickness of a sheet above which it is reported [m].
+const THICK_SHEET: f32 = 0.1;
+
 /// Returns a note for each of these settings in the scene.
 pub(super) fn notes(scene: &SceneFile) -> Vec<String> {
     let grown = scene.groom.iter().filter_map(|groom| groom.grow.as_ref());
@@ -15,15 +25,45 @@ pub(super) fn notes(scene: &SceneFile) -> Vec<String> {
     let lengths = lengths.map(|length| {
         format!("`grow` has hair of {length} m; lengths are in meters, so correct `length` if that is wrong")
     });
-    let radius = |table: &toml::Table| table.get("radius").and_then(toml::Value::as_float);
-    let radii = scene.material.iter().filter_map(|(name, table)| Some((name, radius(table.get_ref())?)));
-    let radii = radii.filter(|(_, radius)| *radius > THICK).map(|(name, radius)| {
+    let materials = scene.material.iter().flat_map(|(name, table)| of_material(name, table.get_ref()));
+    let gravity = Some(scene.gravity.length()).filter(|length| *length > STRONG);
+    let gravity = gravity.map(|length| {
+        format!("gravity is {length:.0} m/s²; it is in m/s² (9.81 on Earth), so correct `gravity` if that is wrong")
+    });
+    let sheets = scene.sheet.iter().filter_map(|sheet| sheet.thickness).filter(|thick| *thick > THICK_SHEET);
+    let sheets = sheets.map(|thick| {
+        format!(
+            "a [[sheet]] is {thick} m thick; lengths are in meters, so correct `thickness` if that is wrong"
+        )
+    });
+    lengths.chain(materials).chain(gravity).chain(sheets).chain(held_open(scene)).collect()
+}
+
+/// Returns a note for each of these settings in the material `name`.
+fn of_material(name: &str, table: &toml::Table) -> Vec<String> {
+    let number = |key: &str| {
+        let value = table.get(key)?;
+        value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+    };
+    let radius = number("radius").filter(|radius| *radius > THICK).map(|radius| {
         format!(
             "[material.{name}] has hair that is {:.3} m thick; lengths are in meters, so correct `radius` if that is wrong",
             2.0 * radius
         )
     });
-    lengths.chain(radii).chain(held_open(scene)).collect()
+    let density = number("density").filter(|density| *density < LIGHT).map(|density| {
+        format!(
+            "[material.{name}] has a density of {density} kg/m³; it is in kg/m³ (hair has 1300), so correct `density` if that \
+             is wrong"
+        )
+    });
+    let young = number("young").filter(|young| *young < SOFT).map(|young| {
+        format!(
+            "[material.{name}] has a Young's modulus of {young} Pa; it is in Pa (hair has 3.9e9), so correct `young` if that \
+             is wrong"
+        )
+    });
+    [radius, density, young].into_iter().flatten().collect()
 }
 
 /// Returns a note if the scene has a tie and strand contact. A tie pulls strands together, and strand contact keeps them apart.

@@ -6,6 +6,7 @@ mod body;
 mod body_unit;
 mod builtin;
 mod check;
+mod collision;
 mod exact_arrays;
 mod expected;
 mod file;
@@ -151,11 +152,14 @@ struct Reader<'a> {
     repairs: Repairs,
     /// The body, once its first file is read.
     whole: Option<WholeBody>,
+    /// The files of the body and of its motion, whose motions may be played.
+    played: Vec<PathBuf>,
 }
 
 impl<'a> Reader<'a> {
     fn new(path: &'a Path, text: &'a str, grooms: &'a [GroomFile]) -> Self {
-        Self { path, text, grooms, notes: Vec::new(), repairs: Repairs::default(), whole: None }
+        let (notes, repairs) = (Vec::new(), Repairs::default());
+        Self { path, text, grooms, notes, repairs, whole: None, played: Vec::new() }
     }
 
     /// Returns the path of a file that the scene names.

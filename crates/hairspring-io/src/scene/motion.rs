@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     Character, Format, ReadOptions, Result,
-    clip_choice::{first_note, pick_clip, unplayed_note},
+    clip_choice::{clip_names, first_note, pick_clip, unplayed_note},
     load::read_motion_at,
 };
 use hairspring::body::{
@@ -32,7 +32,8 @@ impl Reader<'_> {
                 Some(c) if file.builtin.is_some() => (Some(c.body), c.clips.into_iter().next(), None),
                 Some(c) => {
                     if let Some(body) = file.body.as_ref().filter(|_| c.vertex_cache.is_none()) {
-                        self.note(&self.resolve(&body.file), unplayed_note(&c.clips).into_iter().collect());
+                        let note = unplayed_note(&clip_names(&c.clips), "; add [clip] to play one");
+                        self.note(&self.resolve(&body.file), note.into_iter().collect());
                     }
                     (Some(c.body), None, c.vertex_cache)
                 }

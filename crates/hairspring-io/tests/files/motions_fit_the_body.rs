@@ -275,6 +275,35 @@ fn files_that_are_cut_short_are_read_to_the_last_whole_frame() {
 }
 
 #[test]
+fn a_frame_with_another_number_of_values_than_channels_is_refused() {
+    let header = |frames: usize| format!("Frames: {frames}\nFrame Time: 0.02\n");
+    let whole = bvh(&header(4), 4);
+    for (text, line, count) in [
+        (whole.replace("0 0 0 0 2 0", "0 0 0 0 2 0 7"), 21, 7),
+        (whole.replace("0 0 0 0 0 0", "0 0 0 0 0"), 19, 5),
+        // Every line has too few or too many numbers, also where the header names another number of frames.
+        (bvh(&header(4), 0) + &"1 2 3 4 5 6 7\n".repeat(4), 19, 7),
+        (bvh(&header(9), 0) + &"1 2 3 4 5\n".repeat(4), 19, 5),
+        // The words add up to whole frames.
+        (whole.replace("0 0 0 0 1 0", "0 0 0 0 1").replace("0 0 0 0 2 0", "0 0 0 0 2 0 7"), 20, 5),
+        (bvh(&header(1), 0) + "1 2 3 4 5\n", 19, 5),
+    ] {
+        let error = read(&text).unwrap_err();
+        let expected =
+            format!("line {line}: a frame has {count} numbers here, and the skeleton has 6 channels");
+        assert!(error.contains(&expected), "{error}");
+    }
+    // Frames that are wrapped over several lines, and two frames on a line.
+    let (want, _) = read(&whole).unwrap();
+    for (from, to) in [("0 0 0 0", "0 0 0\n0"), ("0 0 0 0", "0\n0 0 0"), ("0 0\n0 0 0 0 1", "0 0 0 0 0 0 1")]
+    {
+        let (clip, notes) = read(&whole.replace(from, to)).unwrap();
+        assert_eq!(clip.samples, want.samples, "{to:?}");
+        assert!(!notes.contains("frames"), "{notes}");
+    }
+}
+
+#[test]
 fn unusual_frame_times_are_reported_and_replaced_by_the_rate_of_the_scene() {
     for (time, likely) in
         [("30", 30.0), ("33.333", 30.0), ("16.6667", 60.0), ("41.667", 24.0), ("0.0001", 30.0)]

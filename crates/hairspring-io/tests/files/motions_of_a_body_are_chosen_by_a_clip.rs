@@ -47,6 +47,47 @@ fn motions_that_are_not_played_are_noted() {
 }
 
 #[test]
+fn motions_of_other_meshes_and_of_hair_are_noted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    fs::write(path("head.glb"), moving(&[]).glb()).unwrap();
+    fs::write(path("other.glb"), moving(&["swing"]).glb()).unwrap();
+    let mut lines = GltfFile::default();
+    let points = lines.floats("VEC3", &[0.0, 0.0, 0.0, 0.0, -0.1, 0.0, 0.0, -0.2, 0.0]);
+    lines.push("meshes", json!({"primitives": [{"mode": 3, "attributes": {"POSITION": points}}]}));
+    lines.json["nodes"] = json!([{"mesh": 0}]);
+    lines.json["scenes"][0]["nodes"] = json!([0]);
+    lines.push("animations", json!({"name": "swing", "samplers": [], "channels": []}));
+    fs::write(path("hair.glb"), lines.glb()).unwrap();
+    let hair = "[[groom]]\nguides = \"all\"\n[groom.grow]\nstrands = 20\nlength = 0.05\n";
+    let notes = |rest: &str| {
+        fs::write(path("a.toml"), format!("{hair}[body]\nfile = \"head.glb\"\n{rest}\n")).unwrap();
+        read_scene(&path("a.toml")).unwrap().notes
+    };
+    let text = "the file has 1 motion (swing), which is not played";
+    let rigid = "file = \"other.glb\"\njoint = \"Head\"";
+    for (rest, file, end) in [
+        (format!("[[body.more]]\n{rigid}"), "other.glb", "; the mesh moves with the joints of the [body]"),
+        (format!("[collision]\n{rigid}"), "other.glb", "; the mesh moves with the joints of the [body]"),
+        (format!("[[sheet]]\n{rigid}"), "other.glb", "; the mesh moves with the joints of the [body]"),
+        (
+            "[[prop]]\nname = \"Rope\"\nmesh = { file = \"other.glb\" }".into(),
+            "other.glb",
+            "; the [[prop]] moves by its `keys`",
+        ),
+        ("[[groom]]\nfile = \"hair.glb\"".into(), "hair.glb", " on the strands; they follow the [body]"),
+    ] {
+        let found = notes(&rest);
+        let wanted = format!("{file}: {text}{end}");
+        assert_eq!(found.iter().filter(|note| **note == wanted).count(), 1, "{rest}: {found:?}");
+        assert_eq!(found.iter().filter(|note| note.contains("not played")).count(), 1, "{rest}: {found:?}");
+    }
+    // The motion of that file is played.
+    let found = notes(&format!("[[body.more]]\n{rigid}\n[clip]\nfile = \"other.glb\""));
+    assert!(found.iter().all(|note| !note.contains("not played")), "{found:?}");
+}
+
+#[test]
 fn the_first_of_several_motions_is_noted() {
     let text = "the file has 2 motions, and the first, \"walk\", is used; set `name` to use another: run";
     let file = moving(&["walk", "run"]);

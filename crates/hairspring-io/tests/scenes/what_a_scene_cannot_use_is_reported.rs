@@ -191,3 +191,46 @@ fn meshes_without_a_unit_have_that_of_the_body_if_they_are_within_its_reach() {
     let (low, high) = size(&scene.collision.unwrap().mesh.positions);
     assert!(low.abs() < 1e-4 && (high - 1.8).abs() < 1e-4, "{low} to {high}: {reported:?}");
 }
+
+#[test]
+fn a_collision_mesh_that_hair_does_not_meet_is_reported() {
+    let folder = folder();
+    let scene = |mesh: String, rest: &str| {
+        fs::write(folder.path().join("box.obj"), mesh).unwrap();
+        let text = format!(
+            "[body]\nfile = \"head.obj\"\nscale = 1.0\n[collision]\nfile = \"box.obj\"\n{rest}\n{GROOM}"
+        );
+        read(folder.path(), &text).unwrap().notes
+    };
+    let of_collision = "box.obj: the [collision] mesh";
+    let near = cube(false, Vec3::new(0.1, -0.2, -0.1));
+    let found = scene(near.clone(), "scale = 1.0");
+    assert_eq!(notes(&found, of_collision), 0, "{found:?}");
+    // 9.8 m to the left of the first root.
+    let found = scene(cube(false, Vec3::X * -10.0), "scale = 1.0");
+    assert_eq!(notes(&found, &format!("{of_collision} is 9.80 m from the nearest root")), 1, "{found:?}");
+    let found = scene(near.clone(), "scale = 0.1");
+    assert_eq!(
+        notes(&found, &format!("{of_collision} is 0.020 m large, and the [body] 1.000 m")),
+        1,
+        "{found:?}"
+    );
+    let lid = near.lines().filter(|line| *line != "f 5 6 8 7").collect::<Vec<_>>().join("\n");
+    let found = scene(lid, "scale = 1.0");
+    assert_eq!(notes(&found, &format!("{of_collision} is not closed (4 edges")), 1, "{found:?}");
+}
+
+#[test]
+fn a_mesh_whose_vertices_are_all_at_one_place_is_refused() {
+    let folder = folder();
+    fs::write(folder.path().join("point.obj"), "v 1 2 3\n".repeat(4) + "f 1 2 3\nf 1 3 4\n").unwrap();
+    for rest in [
+        "[body]\nfile = \"point.obj\"\nscale = 1.0",
+        "[body]\nfile = \"head.obj\"\nscale = 1.0\n[collision]\nfile = \"point.obj\"\nscale = 1.0",
+    ] {
+        let error = read(folder.path(), &format!("{rest}\n{GROOM}")).unwrap_err().to_string();
+        let expected =
+            "point.obj: all vertices of its triangles are at one place, so it has no size; export it again";
+        assert!(error.ends_with(expected), "{error}");
+    }
+}

@@ -1,11 +1,17 @@
 //! What a user should know about a scene before it plays.
 
-use super::Stage;
+use super::{Stage, hair::StagedHair};
+use crate::InitialContact;
+use glam::Vec3;
 use hairspring::{collide::ColliderShape, simulation::VolumeReport};
 
 /// Thickness below which hair may pass through a hull [m]. The side on which hair was is remembered for boxes, capsules
 /// and sheets only.
 const THIN_HULL: f32 = 5e-3;
+
+/// Depth of the shallowest root in a collider from which on it is reported [m]. Roots lie less deep in a shape that stands
+/// for the head.
+const DEEP_ROOT: f32 = 0.01;
 
 /// Ratio above which cells are reported as larger than the hair needs [1]. With twice the size, results change by less
 /// than a tenth.
@@ -13,14 +19,15 @@ const MUCH_COARSER: f32 = 1.5;
 
 impl Stage {
     /// Returns a sentence for each thing that cannot be as the scene asks: a collision mesh that is too thin for its
-    /// distance field, thin hulls, hair that starts inside colliders, more guides than asked for, and a volume whose cells
-    /// are enlarged.
+    /// distance field, thin hulls, hair that starts inside colliders, colliders around all roots, more guides than asked for,
+    /// and a volume whose cells are enlarged.
     /// It describes the current state, so it is called before the first step.
     pub fn notes(&self) -> Vec<String> {
         let thin = self.thin_mesh().map(|thin| thin.to_string());
         let inside = self.starts_inside().map(|inside| inside.to_string());
         let guides = self.hair.iter().filter_map(|hair| hair.more_than_asked());
-        guides.chain(thin).chain(self.thin_hull()).chain(inside).chain(self.enlarged_cells()).collect()
+        let colliders = self.thin_hull().into_iter().chain(inside).chain(self.around_all_roots());
+        guides.chain(thin).chain(colliders).chain(self.enlarged_cells()).collect()
     }
 
     /// Describes the thinnest hull, if hair may pass through it.
@@ -38,6 +45,32 @@ impl Stage {
                 1e3 * THIN_HULL
             )
         })
+    }
+
+    /// Describes each collider that all roots lie deep inside. Those that push hair out first are in [`super::StartsInside`].
+    fn around_all_roots(&self) -> Vec<String> {
+        let strands = self.hair.iter().flat_map(StagedHair::simulated_points);
+        let roots: Vec<Vec3> = strands.map(|points| points[0]).collect();
+        let named = self.scene.colliders.iter().enumerate();
+        let used = named.filter(|(_, collider)| collider.shape.collider_shape().is_some());
+        let mut notes = Vec::new();
+        for ((k, collider), moving) in used.zip(self.scene_colliders()) {
+            let pose = moving.end_pose();
+            let is_around = roots.iter().all(|root| pose.distance(*root) < -DEEP_ROOT);
+            if collider.initial == InitialContact::Keep && is_around && !roots.is_empty() {
+                let remedy = match moving.shape {
+                    ColliderShape::Plane { .. } => "turn its `normal` round, or move it",
+                    _ => "make it smaller, or move it",
+                };
+                notes.push(format!(
+                    "the roots of all {} simulated strands lie inside [[collider]] {}, which does not push out hair that \
+                     starts inside; {remedy}",
+                    roots.len(),
+                    k + 1
+                ));
+            }
+        }
+        notes
     }
 
     /// Describes cells of the volume that are larger than the scene asks for, or much larger than suits the hair.
@@ -84,6 +117,29 @@ mod tests {
         assert!(notes(0.006).iter().all(|note| !note.contains("hull")));
         let thin = notes(0.002);
         assert!(thin.iter().any(|note| note.starts_with("a hull is 2.0 mm thick")), "{thin:?}");
+    }
+
+    #[test]
+    fn colliders_around_all_roots_are_reported() {
+        let head = scene(&BuiltinOptions { strands: 100, ..BuiltinOptions::default() });
+        let root = head.grooms[0].groom.points[0];
+        let notes = |shape: Shape, initial: InitialContact| {
+            let small = Shape::Sphere { center: root + Vec3::X, radius: 0.1 };
+            let keep = |shape| Collider { joint: None, initial: InitialContact::Keep, shape };
+            let colliders = vec![keep(small), Collider { initial, ..keep(shape) }];
+            let notes = Stage::new(Scene { colliders, ..head.clone() }).unwrap().notes();
+            notes.into_iter().filter(|note| note.contains("the roots of all ")).collect::<Vec<_>>()
+        };
+        let plane = |normal: Vec3| Shape::Plane { point: root - 2.0 * Vec3::Y, normal };
+        assert_eq!(notes(plane(Vec3::Y), InitialContact::Keep), Vec::<String>::new());
+        let turned = notes(plane(Vec3::NEG_Y), InitialContact::Keep);
+        assert_eq!(turned.len(), 1, "{turned:?}");
+        assert!(turned[0].contains("inside [[collider]] 2") && turned[0].contains("`normal`"), "{turned:?}");
+        let ball = |radius: f32| Shape::Sphere { center: root, radius };
+        let large = notes(ball(1.0), InitialContact::Keep);
+        assert!(large.len() == 1 && large[0].contains("make it smaller"), "{large:?}");
+        assert_eq!(notes(ball(0.02), InitialContact::Keep), Vec::<String>::new());
+        assert_eq!(notes(ball(1.0), InitialContact::Push), Vec::<String>::new());
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Positions and velocities of the simulated points as plain arrays.
 
-use super::Simulation;
+use super::{Simulation, strand_ref::StrandMut};
 use crate::strand::{model::bend::transport_normal, tile::Elastic};
 use glam::{DVec3, Vec3};
 
@@ -79,28 +79,36 @@ impl Simulation {
         let mut strand = self.strand_mut(place);
         let (model, stride) = (strand.get().elastic(), strand.get().stride());
         for (i, w) in points.windows(2).enumerate() {
-            let (first, new) = (i * stride, w[1] - w[0]);
-            let old: Vec3 = (1..=stride).map(|k| strand.get().edge(first + k)).sum();
-            let turn = |v: Vec3| {
-                let [from, to] = [old, new].map(|e| e.as_dvec3().normalize_or(DVec3::Y));
-                transport_normal(v.as_dvec3(), from, to).as_vec3()
-            };
+            set_segment(&mut strand, i, w[1] - w[0]);
             if model == Elastic::Springs {
-                // The extra particle keeps its place beside the segment.
-                let aside = strand.get().edge(first + 1) - 0.5 * old;
-                let aside = turn(aside).normalize_or_zero() * aside.length();
-                strand.set_edge(first + 1, 0.5 * new + aside);
-                strand.set_edge(first + 2, 0.5 * new - aside);
-                strand.set_velocity(first + 1, velocities[i].midpoint(velocities[i + 1]));
-            } else {
-                let normal = strand.get().normal(first);
-                strand.set_normal(first, turn(normal));
-                strand.set_edge(first + 1, new);
+                strand.set_velocity(i * stride + 1, velocities[i].midpoint(velocities[i + 1]));
             }
         }
         for (i, v) in velocities.iter().enumerate() {
             strand.set_velocity(i * stride, *v);
         }
         self.begin_history(place);
+    }
+}
+
+/// Sets the vector of segment `j` to `new` [m]. Its frame rotates with it by the smallest rotation, and the extra
+/// particle of the springs model keeps its place beside it.
+pub(super) fn set_segment(strand: &mut StrandMut<'_>, j: usize, new: Vec3) {
+    let (model, stride) = (strand.get().elastic(), strand.get().stride());
+    let first = j * stride;
+    let old: Vec3 = (1..=stride).map(|k| strand.get().edge(first + k)).sum();
+    let turn = |v: Vec3| {
+        let [from, to] = [old, new].map(|e| e.as_dvec3().normalize_or(DVec3::Y));
+        transport_normal(v.as_dvec3(), from, to).as_vec3()
+    };
+    if model == Elastic::Springs {
+        let aside = strand.get().edge(first + 1) - 0.5 * old;
+        let aside = turn(aside).normalize_or_zero() * aside.length();
+        strand.set_edge(first + 1, 0.5 * new + aside);
+        strand.set_edge(first + 2, 0.5 * new - aside);
+    } else {
+        let normal = strand.get().normal(first);
+        strand.set_normal(first, turn(normal));
+        strand.set_edge(first + 1, new);
     }
 }

@@ -1,6 +1,6 @@
 //! Strand contact in the simulation: contacts between strands are solved between substeps.
 
-use super::Simulation;
+use super::{Simulation, points::set_segment};
 use crate::settings::{self, OutOfRange, Validate};
 use crate::{
     simd::lanes::LANES,
@@ -70,6 +70,22 @@ impl Simulation {
                 rows.into_iter().zip(change).for_each(|(row, change)| *row += change);
             }
         });
+        self.move_points(neighbours, frame.h);
+    }
+
+    /// Moves all points by `h` [s] times the change of their velocity by the contacts. Segments keep their lengths.
+    fn move_points(&mut self, neighbours: &Neighbours, h: f32) {
+        let hair = &neighbours.hair;
+        for k in 0..self.model.lane_of_strand.len() {
+            let mut strand = self.strand_mut(self.model.lane_of_strand[k] as usize);
+            for (j, i) in hair.strand(hair.shown(k)).skip(1).enumerate() {
+                let turn = h * (neighbours.change(i) - neighbours.change(i - 1));
+                if turn != Vec3::ZERO {
+                    let old = strand.get().segment(j).as_vec3();
+                    set_segment(&mut strand, j, (old + turn).normalize_or(old) * old.length());
+                }
+            }
+        }
     }
 
     /// Copies positions, velocities, masses and bending stiffness of all points to `hair`, for a substep of

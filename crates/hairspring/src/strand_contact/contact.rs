@@ -2,7 +2,8 @@
 //!
 //! n is the normal from the second segment to the first, g the gap [m], and u their relative velocity at the
 //! closest points. W is the change of that velocity for a unit of impulse (`response`), and d is how far they
-//! have slid since they last stuck [m]:
+//! have slid since they last stuck [m]. Both are those at the start of the substep; for segments that would meet in
+//! the next one, g is that at its end, so that fast segments do not pass through each other:
 //!
 //! ```text
 //! along n     P ← max(least, P − (u·n + G) / W)        G = g/h ahead of contact, RECOVERY g/h inside
@@ -16,14 +17,16 @@
 use super::{closest::closest, hair::Hair, response::Response};
 use glam::{Mat3, Vec3};
 
-/// Share of an overlap, or of a slip, that is corrected in a substep [1]. With x the overlap and η the share
-/// of the motion that an impulse stops, loads settle as x''' + η x'' + η (RECOVERY + LOAD_GAIN) x' + η RECOVERY
-/// LOAD_GAIN x = 0. That oscillates for η < RECOVERY LOAD_GAIN / (RECOVERY + LOAD_GAIN), which is a seventh.
+/// Share of an overlap, or of a slip, that is corrected in a substep [1].
 const RECOVERY: f32 = 0.2;
 
 /// Share of an impulse that is added to the load when it increases the load [1]. An impulse that decreases
 /// the load counts in full, so that a segment that is released is not thrown.
 const LOAD_GAIN: f32 = 0.5;
+
+/// Relative speed from which a contact carries no load [m/s]. A load acts along the normal of the substep before, so
+/// between segments that move it does work, and drives them; between segments at rest it is carried in full.
+const MOVING: f32 = 0.1;
 
 /// Gap, over the sum of the radii, up to which segments are near each other and bonds hold [1].
 pub const MAX_NEAR_GAP: f32 = 0.15;
@@ -52,9 +55,10 @@ pub struct Contact {
     at: [f32; 2],
     /// Unit normal from the second segment to the first.
     normal: Vec3,
-    /// Gap between their surfaces; negative inside [m].
+    /// Gap between their surfaces, negative inside [m]: at the start of the substep while impulses are solved, and at
+    /// its end after [`Contact::carry`]. For segments that would meet in the next substep, one substep later.
     gap: f32,
-    /// How far the first has slid along the second since they last stuck [m].
+    /// How far the first has slid along the second since they last stuck, at the same time as the gap [m].
     slip: Vec3,
     /// The carried force on the first segment, along the normal and across it [N].
     load: Force,
@@ -110,7 +114,7 @@ enum Bond {
 }
 
 impl Contact {
-    /// Returns the current contact of two segments. `old` is their contact before the substep of `h` [s].
+    /// Returns the contact of two segments after a substep of `h` [s]. `old` is their contact before it.
     /// Returns `None` if they are not near each other.
     pub fn find(pair: [u32; 2], old: Option<&Contact>, hair: &Hair, h: f32) -> Option<Self> {
         let [a, b] = pair.map(|s| hair.ends(s));
@@ -144,17 +148,20 @@ impl Contact {
             bond: Bond::None,
             at_bound: false,
         };
-        let velocity = contact.velocity(hair);
+        let (gap, moved) = (contact.gap, h * normal.dot(contact.velocity(hair)));
+        if gap <= 0.0 || gap >= -moved {
+            contact.gap -= moved;
+        }
         if let Some(old) = old {
             let flat = |v: Vec3| v - normal * normal.dot(v);
             contact.bond = old.bond;
             contact.last = Force { across: flat(old.last.across), ..old.last };
             contact.load = Force { across: flat(old.load.across), ..old.load };
             if old.last.along > 0.0 || old.bond != Bond::None {
-                contact.slip = flat(old.slip + velocity * h);
+                contact.slip = flat(old.slip);
             }
         }
-        let near = contact.gap < MAX_NEAR_GAP * within || contact.gap < -h * normal.dot(velocity);
+        let near = gap < MAX_NEAR_GAP * within || gap < -moved;
         near.then_some(contact)
     }
 
@@ -217,8 +224,13 @@ impl Contact {
         }
     }
 
-    /// Ends the substep. The load of the next is what acted both in this substep and in the one before.
-    pub fn carry(&mut self, rules: &SolverParams) {
+    /// Ends the substep. The load of the next is what acted both in this substep and in the one before, less for
+    /// segments that move.
+    pub fn carry(&mut self, rules: &SolverParams, hair: &Hair) {
+        let velocity = self.velocity(hair);
+        let along = self.normal.dot(velocity);
+        self.gap += rules.h * along;
+        self.slip += rules.h * (velocity - self.normal * along);
         let share = if self.impulse.along < 0.0 { 1.0 } else { LOAD_GAIN };
         let total = Force {
             along: self.load.along + self.impulse.along * (share / rules.h),
@@ -232,6 +244,9 @@ impl Contact {
         } else {
             Vec3::ZERO
         };
+        let still = 1.0 - (velocity.length() / MOVING).min(1.0);
+        self.load.along *= still;
+        self.load.across *= still;
         (self.last, self.impulse) = (total, Force::default());
         self.bond = match (self.bond, self.at_bound) {
             (Bond::None, false) if rules.stiction > 0.0 && total.along > 0.0 && self.gap <= 0.0 => {

@@ -9,7 +9,7 @@
 //! before a substep   v ← v + h M⁻¹ Jᵀ F           F the loads that contacts carry, J the contact Jacobian
 //! the substep        every strand separately
 //! after it           v ← v + A⁻¹ Jᵀ p             p by projected Gauss–Seidel, so that no segments
-//!                                                 overlap at the end of the next substep;
+//!                    x ← x + h A⁻¹ Jᵀ p           overlap that did not before;
 //!                                                 A the response of strands: masses and bending (`response`),
 //!                                                 and constant lengths (`along`)
 //! carried            F ← what acted both in this substep and in the one before, F + p/h
@@ -22,7 +22,9 @@
 //! an impact and is not carried.
 //!
 //! Every impulse acts on both segments with opposite signs, so momentum is conserved to rounding. Positions
-//! are never changed: lengths and contacts with bodies stay as the substep left them.
+//! move as if the impulses had acted during the substep; segments turn and keep their lengths. With impulses on
+//! velocities alone, segments overlapped for a substep before they were stopped, and bundles vibrated at ten times
+//! the speed.
 //!
 //! Strands that are identical at rest are merged (`hair`), and the number of neighbors of a segment is
 //! limited (`grid`), so the cost of a dense crowd is linear in its size.
@@ -205,7 +207,7 @@ impl Neighbours {
     }
 
     /// Finds the contacts of `hair` after a substep of `h` [s], and changes velocities so that no segments
-    /// overlap after the next.
+    /// overlap once points have moved by `h` times the [`Neighbours::change`].
     pub fn solve_contacts(&mut self, h: f32) {
         let Self { hair, grid, along, contacts, before, responses, .. } = self;
         std::mem::swap(contacts, before);
@@ -233,6 +235,6 @@ impl Neighbours {
                 .for_each(|(contact, responses)| contact.solve(responses, &rules, hair));
             along.keep_lengths(hair);
         }
-        contacts.iter_mut().for_each(|contact| contact.carry(&rules));
+        contacts.iter_mut().for_each(|contact| contact.carry(&rules, hair));
     }
 }

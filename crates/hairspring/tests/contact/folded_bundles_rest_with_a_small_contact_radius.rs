@@ -1,5 +1,5 @@
 //! Promise: a bundle that folds over at its roots comes to rest with a contact radius of a fifth of the default: after 10 s
-//! no point moves faster than 3 mm/s.
+//! no point moves faster than 3 mm/s. With the default radius, the fastest point moves slower than 0.15 m/s in the mean.
 //!
 //! # Limitations
 //! With the default radius, the bundle fills its space at rest. Strands that lean over at their roots come closer than
@@ -42,15 +42,22 @@ fn a_bundle_that_falls_over_at_its_roots_rests() {
         let mut thin = simulation();
         thin.set_neighbours(&on).unwrap();
         let roots = roots(&groom, REST);
-        let mut fastest = 0.0f64;
+        let (mut fastest, mut mean) = (0.0f64, 0.0);
         for frame in 0..660 {
             step(&mut thin, REST, &roots, &[]);
+            step(&mut default, REST, &roots, &[]);
             if frame >= 600 {
                 fastest = fastest.max(thin.measure(&[]).speed_max);
+                mean += default.measure(&[]).speed_max / 60.0;
             }
         }
         let touching = thin.neighbours().unwrap().touching_pairs;
-        println!("{way}: {:.2} mm/s, {touching} pairs touch", 1e3 * fastest);
+        println!(
+            "{way}: {:.2} mm/s, {touching} pairs touch; default radius {:.1} mm/s",
+            1e3 * fastest,
+            1e3 * mean
+        );
         assert!(fastest < 3e-3 && touching > 0, "{way}: {fastest} m/s, {touching} pairs touch");
+        assert!(mean < 0.15, "{way}: {mean} m/s with the default radius");
     }
 }
