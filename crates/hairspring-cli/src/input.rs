@@ -73,7 +73,7 @@ pub struct Input {
     pub units: Units,
 
     /// Strands to simulate in each groom, and in the brows of the built-in head, at least one for each group; the others
-    /// follow. A number, `all`, or `file` for the guides that the file names [default: from the scene, otherwise 2000]
+    /// follow. A number, `all`, or `file` for the guides that the file names [default: from the scene, otherwise `file`, or 2000 if the file names none]
     #[arg(long, value_name = "N|all|file", value_parser = frames::guides)]
     pub guides: Option<Guides>,
 

@@ -26,7 +26,7 @@ pub struct View {
     #[arg(long, value_name = "X,Y,Z", value_parser = frames::point, allow_hyphen_values = true)]
     pub target: Option<Vec3>,
 
-    /// Vertical field of view [degrees], 1 to 170
+    /// Vertical field of view [degrees], a whole number from 1 to 170 [default: from the scene, otherwise 30]
     #[arg(long, value_name = "DEGREES", value_parser = clap::value_parser!(u8).range(1..=170))]
     pub fov: Option<u8>,
 

@@ -13,8 +13,8 @@ define_settings! {
     /// absorption inside the fiber, which tints highlights, transmitted light and shadow. Alternatively `melanin`
     /// gives the pigment; the colors are then ignored.
     ///
-    /// # Missing
-    /// A separate melanin value for the tip; a fraction of gray hairs among others.
+    /// # Limitations
+    /// The tip has no melanin value of its own, and there are no gray hairs among others.
     #[derive(Clone, Debug, PartialEq)]
     pub struct HairLook {
         /// Color of a thick lock of hair at the root. The default is dark brown.

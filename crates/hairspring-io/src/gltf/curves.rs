@@ -21,7 +21,7 @@ use glam::{Affine3A, Vec2, Vec3};
 use hairspring::groom::Groom;
 use std::{collections::HashMap, rc::Rc};
 
-/// Points that a file of any size may have. A larger file may have one more for each byte.
+/// Points that a file of any size may have. Every byte of the file adds one.
 const POINTS: usize = 1_000_000;
 
 const LINES: u32 = 1;
@@ -328,7 +328,7 @@ impl Build<'_> {
         note(found.loops, "closed lines (LINE_LOOP) are opened at their first point, which is the root");
         note(
             found.deformed,
-            "primitives of lines have a skin or morph targets and are read without; apply them before the export",
+            "primitives of lines have a skin or morph targets and are read without them; apply them before the export",
         );
         note(
             found.copies,

@@ -115,6 +115,9 @@ impl Stage {
     /// Roots without a binding are bound to the nearest point of the body. With `solver.preroll`, or a collider
     /// that pushes hair out ([`crate::InitialContact::Push`]), this includes the pre-roll, which takes as long as
     /// simulating that much of the scene.
+    ///
+    /// # Errors
+    /// If a setting is out of range, a joint does not exist, or hair is too far from the origin: see [`StageError`].
     pub fn new(mut scene: Scene) -> Result<Self, StageError> {
         check(&scene)?;
         if let Some(body) = &scene.body {

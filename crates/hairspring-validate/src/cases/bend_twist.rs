@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 pub const CASE: Case = Case {
     name: "bend-twist",
-    about: "A naturally curved strand, clamped with its tangent down, buckles out of its plane if its weight is below Γ*.",
+    about: "A naturally curved strand, clamped with its tangent down, buckles out of its plane if Γ is below Γ*.",
     parameters: &[
         Parameter { symbol: &KAPPA_L, range: (5.0, 20.0) },
         Parameter { symbol: &GJ_OVER_EI, range: (0.3, 1.5) },
@@ -53,7 +53,7 @@ pub const CASE: Case = Case {
 /// Natural twist that serves as the imperfection of the planar shape, over the whole strand [rad].
 const TWIST: f64 = 0.005;
 
-/// Mean distance from the plane, over the curl's radius, above which a strand has left its plane [1].
+/// Root-mean-square distance from the plane, over the curl's radius, above which a strand has left its plane [1].
 const LEFT: f64 = 0.2;
 
 /// Natural twist over the distance by which it moves the strand out of its plane (root mean square over the

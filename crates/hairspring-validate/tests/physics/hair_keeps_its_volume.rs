@@ -60,8 +60,7 @@ fn a_start_at_rest_is_not_disturbed() {
             mean_distance(&volume_last, &start),
             mean_distance(&volume_last, &last)
         );
-        // Without a volume method the wavy head creeps by 0.6 mm. Creeping hair takes other hair along, and
-        // an incompressible volume makes way for it.
+        // Hair that creeps takes other hair along, and an incompressible volume makes way for it.
         let moved = mean_distance(&volume_last, &start);
         assert!(moved < 2e-3, "{method:?}: points moved by {moved} m in the mean in a second at rest");
     }

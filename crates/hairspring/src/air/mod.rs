@@ -16,7 +16,7 @@
 //! directional winds would add up to one. Everything else is sampled once a frame, at the positions of the
 //! points at its start and at the time of its middle, and stays constant during the frame.
 //!
-//! # Missing
+//! # Limitations
 //! The air is prescribed, not simulated: hair and bodies slow it down but do not deflect it. The velocity of
 //! a moving source is not added to its wind.
 //!

@@ -12,7 +12,7 @@
 //! Two parts of the model are our own: a body attenuates like dense hair, and the occlusion fades to nothing
 //! at `reach`, as a wake fills up. T is computed at the nodes of the grid and interpolated at points.
 //!
-//! # Missing
+//! # Limitations
 //! Blocked air does not flow around a collider: there is no faster wind at its edges. Follow hairs are
 //! occluded as their guides are.
 
@@ -44,8 +44,8 @@ define_settings! {
         /// Attenuation of the wind inside a body, β. 0: bodies do not block the wind. With 100, the wind falls to
         /// 1/e within one centimeter.
         body: f32 = 0.0, ["1/m"], {0 or more}, when WIND_BLOWS;
-        /// Attenuation of the wind in hair that is as dense as at rest, η. 0: hair does not block the wind. With
-        /// 50, the wind falls to 1/e within two centimeters.
+        /// Attenuation of the wind in hair that is as dense as at rest, η. Hair also shelters itself by its
+        /// density, which is not affected. With 50, the wind falls to 1/e within two centimeters.
         ///
         /// Density is relative to the groom at rest, so a single strand occludes like dense hair.
         hair: f32 = 0.0, ["1/m"], {0 or more}, when WIND_BLOWS;

@@ -12,7 +12,7 @@
 //! eddy of size ℓ and speed u. Each octave halves the size of the eddies; their speed follows Kolmogorov
 //! 1941, u ~ ℓ^(1/3).
 //!
-//! # Missing
+//! # Limitations
 //! Wind sources do not carry the noise along, and bodies do not stop it (Bridson 2007, §2.4: ψ ramped to 0 at
 //! a wall).
 

@@ -57,8 +57,9 @@ impl std::fmt::Debug for ColliderPose {
 }
 
 impl ColliderPose {
-    /// Creates the pose of a shape that moves from `start` to `end` in a substep that lasts the fraction
-    /// `interval_fraction` of an interval.
+    /// Creates the pose of a shape that moves from `start` to `end` in a substep. Both are the rotation and the
+    /// translation [m] from the shape to the world. `interval_fraction` (0 to 1) is the duration of the substep over
+    /// that of the interval of a deforming shape's displacements; it has no effect on rigid shapes.
     pub fn new(shape: ColliderShape, start: (Mat3, Vec3), end: (Mat3, Vec3), interval_fraction: f32) -> Self {
         let (center, radius) = shape.bounds();
         let bounds = (end.0 * center + end.1, radius);

@@ -38,7 +38,7 @@ const MAX_NODES: usize = 1 << 22;
 
 /// A mesh that need not be closed, with a thickness.
 ///
-/// # Missing
+/// # Limitations
 /// - A point that moves by more than the thickness in a substep may come out on the other side, because the
 ///   shell does not know where the point was before. (Motion of the shell itself does not cause this: frames
 ///   are divided into time slices and substeps that are short enough.)

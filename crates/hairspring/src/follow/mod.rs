@@ -81,8 +81,8 @@ pub struct FollowLayout {
 
 /// The follow hairs of one groom: styling settings, and the transforms of the guides in the current frame.
 ///
-/// # Missing
-/// Levels of detail.
+/// # Limitations
+/// There are no levels of detail.
 ///
 /// For an example, see [`follow`](crate::follow).
 pub struct Follow {

@@ -14,7 +14,7 @@
 //! constant acceleration during the frame. If its stiffness 2F/r exceeds what explicit steps can handle, the
 //! excess is implicit. The repulsion of hair by hair is in [`HairField`].
 //!
-//! # Missing
+//! # Limitations
 //! Charge does not move: it does not flow along hair or to a body in contact, and it is not displaced in an
 //! uncharged body.
 

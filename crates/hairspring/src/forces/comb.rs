@@ -10,8 +10,8 @@
 //! Hair across the comb's motion is moved along until it is taut. Hair along the motion is drawn through,
 //! with friction, up to its tip. V is the comb's velocity at the point.
 //!
-//! # Missing
-//! Individual tines: the hair is not divided into locks, one for each gap.
+//! # Limitations
+//! A comb has no single tines: the hair is not divided into locks, one for each gap.
 
 use super::StrandView;
 use crate::{math::RigidTransform, settings::define_settings};

@@ -10,8 +10,8 @@
 //!
 //! Held points lag by g/ω² times the ratio of the load they carry to their own mass.
 //!
-//! # Missing
-//! Fingers: hair does not slide through the ball. Use a collider for a hand that strokes the hair.
+//! # Limitations
+//! A hand has no fingers: hair does not slide through the ball. Use a collider for a hand that strokes the hair.
 
 use super::bond::{Bond, Spring};
 use crate::settings::define_settings;

@@ -13,7 +13,7 @@
 //! motion takes the gathering time. If the hair between root and ring is too short, the strand slips through
 //! the ring: the next segment is attached in place of the last.
 //!
-//! # Missing
+//! # Limitations
 //! Strands do not push each other apart in the ring, so its radius must match the thickness of the hair. It
 //! does not slide off the hair. Only guides are gathered, and follow hairs keep their distance from their
 //! guides. If guides are far apart, more guides or clumping make the tie tight.

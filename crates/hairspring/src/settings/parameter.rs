@@ -94,7 +94,7 @@ pub trait Setting {
         Vec::new()
     }
 
-    /// Returns the value in TOML.
+    /// Returns the value in TOML; empty for types without a fixed default.
     fn toml(&self) -> String {
         String::new()
     }

@@ -39,7 +39,7 @@
 //! of 34,000 nodes). This includes the cold caches that the strands find afterward, and tiles that run one
 //! substep at a time. A frame of 1/60 s has four exchanges.
 //!
-//! # Missing
+//! # Limitations
 //! Follow hairs are moved only by their guides.
 
 mod brakes;

@@ -23,7 +23,7 @@ along each segment pulls its ends together or pushes them apart:</p>
 <p>A bending spring at each joint pulls the change of tangent r = u₂ − u₁ − d back to zero, where d is the change at rest:</p>
 <pre>E = ½ B |r|²          B = EI/L</pre>
 <p>E is Young's modulus of keratin, A the cross-section of a fiber, and I = πr⁴/4: hair is hard to stretch and easy to bend. A segment of hair
-vibrates lengthwise at about 10⁵ rad/s, while the strand swings at about 10 rad/s as a whole. A system is called <em>stiff</em> if its fastest
+vibrates lengthwise at about 10⁶ rad/s, while the strand swings at about 10 rad/s as a whole. A system is called <em>stiff</em> if its fastest
 motion is this much faster than the one that matters. The methods below differ in how they handle stiffness. <small>Sams 2014, §3.1; Lengyel 2012; bending springs
 after Bergou et al. 2008, <i>Discrete Elastic Rods</i>.</small></p>
 ";
