@@ -5,7 +5,7 @@
 //! to segment without twist (Bishop 1975, "There is more than one way to frame a curve": the
 //! rotation-minimizing frame).
 //!
-//! # Missing
+//! # Limitations
 //! The twist that the rod model solves for is not shown, because the library does not expose its frames.
 
 use crate::{overlay::OverlayPainter, snapshot::StageSnapshot};

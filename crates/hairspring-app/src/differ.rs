@@ -35,9 +35,10 @@ impl Difference {
     }
 }
 
-/// The differences between the effective values of the left and the right scene, as one line for each.
-pub fn captions(left: &toml::Table, right: &toml::Table) -> [String; 2] {
-    captions_of(&between(left, right))
+/// The differences between the effective values of the left and the right scene, as one line for each. `texts`
+/// are their parsed texts.
+pub fn captions(effective: [&toml::Table; 2], texts: [&toml::Table; 2]) -> [String; 2] {
+    captions_of(&set_differences(effective, texts))
 }
 
 /// The same for differences that are known.
@@ -65,6 +66,16 @@ pub fn between(left: &toml::Table, right: &toml::Table) -> Vec<Difference> {
     found
 }
 
+/// The differences between the effective values of two scenes. If no text has a camera, the program chose it,
+/// and it does not count.
+fn set_differences(effective: [&toml::Table; 2], texts: [&toml::Table; 2]) -> Vec<Difference> {
+    let mut found = between(effective[0], effective[1]);
+    if texts.iter().all(|text| !text.contains_key("camera")) {
+        found.retain(|d| d.key.split('.').next() != Some("camera"));
+    }
+    found
+}
+
 /// The differences between two scenes: their settings without geometry ([`hairspring_io::read_settings`]) and
 /// the texts of their files. Defaults count as values. The name of a scene does not count.
 ///
@@ -77,7 +88,7 @@ pub fn scene_differences(
     let parse = |text: &str| text.parse::<toml::Table>().map_err(|why| AppError::new(why.to_string()));
     let parsed = [parse(texts[0])?, parse(texts[1])?];
     let effective = [0, 1].map(|k| effective(scenes[k], &parsed[k]));
-    let mut found = between(&effective[0], &effective[1]);
+    let mut found = set_differences(effective.each_ref(), parsed.each_ref());
     // Files, props and motions are not settings. Of the texts, only what has no effective value counts.
     let known = |key: &str| {
         let covered = ["name", "material", "builtin"];
@@ -146,7 +157,15 @@ mod tests {
     use super::*;
 
     fn named(left: &str, right: &str) -> [String; 2] {
-        captions(&left.parse().unwrap(), &right.parse().unwrap())
+        let [left, right] = [left, right].map(|text| text.parse().unwrap());
+        captions([&left, &right], [&left, &right])
+    }
+
+    #[test]
+    fn a_camera_that_the_program_chose_is_no_difference() {
+        let [none, some]: [toml::Table; 2] = ["", "camera.fov = 30.0"].map(|text| text.parse().unwrap());
+        assert_eq!(captions([&some, &none], [&none, &none]), ["the same settings"; 2]);
+        assert_eq!(captions([&some, &none], [&some, &none]), ["camera: there", "camera: none"]);
     }
 
     #[test]

@@ -25,7 +25,7 @@
 //! Data flows in one direction: panels read the session and return actions, the session edits the document
 //! and sends orders to the player, the player publishes snapshots, and a painter draws them.
 //!
-//! # Missing
+//! # Limitations
 //! A thumbnail shows no motion.
 
 mod app;

@@ -2,7 +2,7 @@
 
 use super::App;
 use crate::{panel::files::For, record::Kind, session::Action, view::Tool};
-use eframe::egui::{self, Key, Modifiers, RichText, Ui};
+use eframe::egui::{self, FocusDirection, Key, Label, Modifiers, RichText, Ui};
 
 impl App {
     /// Handles keys that no widget takes.
@@ -49,10 +49,14 @@ impl App {
         for (key, open) in [
             (Key::G, &mut self.open.graphs),
             (Key::P, &mut self.open.presets),
-            (Key::Tab, &mut self.open.panels),
             (Key::Questionmark, &mut self.open.help),
         ] {
             *open ^= pressed(Modifiers::NONE, key);
+        }
+        if pressed(Modifiers::NONE, Key::Tab) {
+            self.open.panels ^= true;
+            // Otherwise the key also moves the focus to a widget, which then takes the other keys.
+            ctx.memory_mut(|memory| memory.move_focus(FocusDirection::None));
         }
         // On many keyboards the question mark is on a shifted key.
         self.open.help ^=
@@ -129,12 +133,20 @@ impl App {
             ui.toggle_value(&mut self.open.graphs, "Graphs");
             ui.toggle_value(&mut self.open.help, "?");
             let document = self.session.edited();
-            let star = if document.is_changed() { " *" } else { "" };
             let file = document.file();
             let name = file.and_then(|p| p.file_name()).map(|n| n.to_string_lossy());
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                ui.label(RichText::new(format!("{}{star}", document.settings().name)).strong());
-                let shown = ui.weak(name.unwrap_or("not saved".into()));
+                // Long names are cut, so that they do not cover the menus. The star stays.
+                if document.is_changed() {
+                    ui.strong("*");
+                }
+                let half = 0.5 * ui.available_width();
+                ui.scope(|ui| {
+                    ui.set_max_width(half);
+                    ui.add(Label::new(RichText::new(&document.settings().name).strong()).truncate());
+                });
+                let name = RichText::new(name.unwrap_or("not saved".into())).weak();
+                let shown = ui.add(Label::new(name).truncate());
                 if let Some(file) = file {
                     shown.on_hover_text(file.display().to_string());
                 }

@@ -1,9 +1,11 @@
 //! The widget of a parameter: a slider, a switch, a choice, a color, a direction.
 
-use super::{Labelled, TipBeside};
+use super::{
+    Labelled, TipBeside,
+    number::{self, tidy},
+};
 use crate::parameter::{Kind, Parameter};
-use eframe::egui::{self, DragValue, Slider, Ui};
-use std::ops::RangeInclusive;
+use eframe::egui::{self, Slider, SliderClamping, Ui};
 use toml_edit::Value;
 
 /// Width of a slider's number with its unit [points].
@@ -26,38 +28,21 @@ pub fn control(
         // A bounded number has become one with a range.
         Kind::Bounded => None,
         Kind::Number { min, max, log } => {
-            let mut value = number.unwrap_or(min);
-            let slider = Slider::from_get_set(min..=max, |new| {
-                if let Some(new) = new {
-                    value = new;
-                    edit(Some(tidy(new)));
-                }
-                value
-            });
-            let slider = slider.logarithmic(log).clamping(egui::SliderClamping::Never).max_decimals(4);
-            fit(ui, parameter.unit());
-            Some(ui.add(written(slider, parameter)).labelled(ui, name))
+            let slider = Scale { range: (min, max), log, clamping: SliderClamping::Never };
+            Some(slider.show(ui, parameter, number.unwrap_or(min), edit).labelled(ui, name))
         }
         Kind::Maybe { min, max, from, without } => {
             let mut on = number.is_some();
             if ui.checkbox(&mut on, "").labelled(ui, name).changed() {
-                edit(on.then(|| tidy(from)));
+                edit(on.then(|| from.into()));
             }
-            let Some(mut value) = number else {
+            let Some(value) = number else {
                 ui.weak(without);
                 return None;
             };
-            let slider = Slider::from_get_set(min..=max, |new| {
-                if let Some(new) = new {
-                    value = new;
-                    edit(Some(tidy(new)));
-                }
-                value
-            });
-            fit(ui, parameter.unit());
             // From 0 on, the slider is linear. Factors have no minimum, so their slider is logarithmic.
-            let slider = slider.logarithmic(min > 0.0).max_decimals(4);
-            Some(ui.add(written(slider, parameter)).labelled(ui, name))
+            let slider = Scale { range: (min, max), log: min > 0.0, clamping: SliderClamping::Edits };
+            Some(slider.show(ui, parameter, value, edit).labelled(ui, name))
         }
         Kind::Count { min, max } => {
             fit(ui, parameter.unit());
@@ -104,10 +89,10 @@ pub fn control(
             Some(combo.response)
         }
         Kind::Color => {
-            let mut color = numbers::<3>(now);
+            let mut color = numbers(now).map(|c| c as f32);
             let response = ui.color_edit_button_rgb(&mut color);
             if response.changed() {
-                edit(Some(color.iter().map(|c| tidy_f64(f64::from(*c))).collect()));
+                edit(Some(color.into_iter().map(short).collect()));
             }
             Some(response)
         }
@@ -120,21 +105,20 @@ pub fn control(
                 ui.weak(without);
                 return None;
             };
-            let mut color = numbers::<3>(Some(now));
+            let mut color = numbers(Some(now)).map(|c| c as f32);
             let response = ui.color_edit_button_rgb(&mut color);
             if response.changed() {
-                edit(Some(color.iter().map(|c| tidy_f64(f64::from(*c))).collect()));
+                edit(Some(color.into_iter().map(short).collect()));
             }
             Some(response)
         }
         Kind::Vector { reach } => {
-            let mut vector = numbers::<3>(now);
+            let mut vector = numbers(now);
             let mut changed = false;
             // Three numbers and their unit fit on one line.
             ui.spacing_mut().item_spacing.x = 4.0;
             for (axis, x) in ["x", "y", "z"].into_iter().zip(&mut vector) {
-                let drag = DragValue::new(x).speed(reach / 200.0).range(-reach..=reach).max_decimals(2);
-                let drag = drag.custom_formatter(plain);
+                let drag = number::drag(x).speed(reach / 200.0).range(-reach..=reach);
                 let drag = ui.add(drag).tip_beside(ui, &format!("{axis} [{}]", parameter.unit()));
                 changed |= drag.changed();
             }
@@ -142,10 +126,14 @@ pub fn control(
                 ui.weak(parameter.unit());
             }
             if parameter.name == "wind.velocity" {
-                changed |= super::wind::pad(ui, &mut vector, reach as f32);
+                let mut wind = vector.map(|c| c as f32);
+                if super::wind::pad(ui, &mut wind, reach as f32) {
+                    (vector[0], vector[2]) = (short(wind[0]), short(wind[2]));
+                    changed = true;
+                }
             }
             if changed {
-                edit(Some(vector.iter().map(|c| tidy_f64(f64::from(*c))).collect()));
+                edit(Some(vector.into_iter().map(tidy).collect()));
             }
             None
         }
@@ -156,7 +144,7 @@ pub fn control(
             // Mass and radius are above 0 everywhere.
             let least = if ["mass_profile", "radius_profile"].contains(&parameter.name) { 0.01 } else { 0.0 };
             for x in &mut profile {
-                let value = DragValue::new(x).speed(0.02).range(least..=100.0).max_decimals(2);
+                let value = number::drag(x).speed(0.02).range(least..=100.0);
                 changed |= ui.add(value).labelled(ui, name).changed();
             }
             if profile.len() < 8 && ui.small_button("+").tip_beside(ui, "Add a value at the tip").clicked() {
@@ -170,7 +158,7 @@ pub fn control(
                 changed = true;
             }
             if changed {
-                edit(Some(profile.into_iter().map(tidy_f64).collect()));
+                edit(Some(profile.into_iter().map(tidy).collect()));
             }
             None
         }
@@ -194,7 +182,7 @@ fn count(
         value
     });
     // Typed numbers may be outside the range.
-    let slider = slider.clamping(egui::SliderClamping::Never).logarithmic(max > 1000 * min.max(1));
+    let slider = slider.clamping(SliderClamping::Never).logarithmic(max > 1000 * min.max(1));
     ui.add(slider.integer())
 }
 
@@ -204,31 +192,44 @@ fn fit(ui: &mut Ui, unit: &str) {
     ui.spacing_mut().slider_width = left.clamp(20.0, 240.0);
 }
 
-/// A slider with its unit. Very large and very small numbers are shown as powers of ten.
-fn written<'a>(slider: Slider<'a>, parameter: &Parameter) -> Slider<'a> {
-    let unit = parameter.unit();
-    let far = match parameter.kind() {
-        Kind::Number { min, max, .. } | Kind::Maybe { min, max, .. } => {
-            max >= 1e5 || max.abs().max(min.abs()) < 1e-2
-        }
-        _ => false,
-    };
-    let slider = if far { slider.custom_formatter(|x, _| far_off(x)) } else { slider };
-    match unit {
-        "" => slider,
-        unit => slider.suffix(format!(" {unit}")),
+/// How a slider moves.
+struct Scale {
+    range: (f64, f64),
+    log: bool,
+    clamping: SliderClamping,
+}
+
+impl Scale {
+    /// Shows a slider with its unit.
+    fn show(
+        self,
+        ui: &mut Ui,
+        parameter: &Parameter,
+        mut value: f64,
+        edit: &mut dyn FnMut(Option<Value>),
+    ) -> egui::Response {
+        fit(ui, parameter.unit());
+        let parser = number::parser(value);
+        let slider = Slider::from_get_set(self.range.0..=self.range.1, |new| {
+            if let Some(new) = new
+                && new != value
+            {
+                value = new;
+                edit(Some(tidy(new).into()));
+            }
+            value
+        });
+        let slider = slider
+            .logarithmic(self.log)
+            .clamping(self.clamping)
+            .custom_formatter(|x, _| number::shown(x))
+            .custom_parser(parser)
+            .update_while_editing(false);
+        ui.add(match parameter.unit() {
+            "" => slider,
+            unit => slider.suffix(format!(" {unit}")),
+        })
     }
-}
-
-/// Formats a very large or very small number as a power of ten, and 0 as plain 0.
-pub fn far_off(x: f64) -> String {
-    if x == 0.0 { "0".into() } else { format!("{x:.2e}") }
-}
-
-/// Formats a number with as many decimals as needed. A value that is displayed as 0 has no sign.
-fn plain(x: f64, digits: RangeInclusive<usize>) -> String {
-    let half = 0.5 * 0.1_f64.powi(*digits.end() as i32);
-    egui::emath::format_with_decimals_in_range(if x.abs() < half { 0.0 } else { x }, digits)
 }
 
 /// A number, whether it is written as an integer or as a float.
@@ -236,27 +237,13 @@ pub fn as_number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
 }
 
-fn numbers<const N: usize>(value: Option<&toml::Value>) -> [f32; N] {
+/// Three numbers; missing ones are 0.
+fn numbers(value: Option<&toml::Value>) -> [f64; 3] {
     let mut list = value.and_then(toml::Value::as_array).into_iter().flatten().filter_map(as_number);
-    std::array::from_fn(|_| list.next().unwrap_or(0.0) as f32)
+    std::array::from_fn(|_| list.next().unwrap_or(0.0))
 }
 
-/// Rounds a number to four significant digits, as a person would write it.
-fn tidy(x: f64) -> Value {
-    tidy_f64(x).into()
-}
-
-fn tidy_f64(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn zero_is_formatted_as_plain_0() {
-        assert_eq!([far_off(0.0), far_off(-2e-7)], ["0", "-2.00e-7"]);
-        assert_eq!([-0.004, -0.006, 1.5].map(|x| plain(x, 1..=2)), ["0.0", "-0.01", "1.5"]);
-    }
+/// Rounds a number that was picked by eye to four significant digits.
+fn short(x: f32) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(f64::from(x))
 }

@@ -1,13 +1,16 @@
 //! Lists of keys as rows: a time and the values at that time, each with its unit. Rows can be added and
 //! removed.
 
-use super::TipBeside;
+use super::{
+    TipBeside,
+    number::{self, tidy},
+};
 use crate::{
     field::{self, Field, Keys, of},
     key::Key,
     session::Action,
 };
-use eframe::egui::{DragValue, Response, Ui};
+use eframe::egui::{Response, Ui};
 use toml_edit::{Array, InlineTable, Value};
 
 /// Time between the last key and an added one [s].
@@ -186,7 +189,7 @@ fn edited(
             _ => 0.005,
         };
         let name = if column == "time" { "Time" } else { axes[axis % 3] };
-        let drag = DragValue::new(&mut shown).speed(speed).range(low..=high).max_decimals(3);
+        let drag = number::drag(&mut shown).speed(speed).range(low..=high);
         let drag = if column == "time" { drag.suffix(" s") } else { drag };
         let response = ui.add(drag).tip_beside(ui, &format!("{name} [{unit}]: {tip}"));
         if slow && !rests(&response) {
@@ -208,11 +211,6 @@ fn edited(
 /// Whether a number is neither dragged nor being typed.
 fn rests(response: &Response) -> bool {
     !response.dragged() && !response.has_focus()
-}
-
-/// Rounds to four decimals: a tenth of a millimeter or of a millisecond, which is sufficient.
-fn tidy(x: f64) -> f64 {
-    (x * 1e4).round() / 1e4
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ pub mod help;
 pub mod inspect;
 pub mod keys;
 pub mod list;
+pub mod number;
 pub mod parameters;
 pub mod presets;
 pub mod recovered;
@@ -47,6 +48,10 @@ impl TipBeside for egui::Response {
                     node.set_label(text);
                 }
             });
+        }
+        // Under the question of a modal window, no tooltip may cover it.
+        if !self.ctx.memory(|memory| memory.is_above_modal_layer(self.layer_id)) {
+            return self;
         }
         let row = Rect::from_x_y_ranges(ui.clip_rect().x_range(), self.rect.y_range());
         for mut tooltip in [Tooltip::for_enabled(&self), Tooltip::for_disabled(&self)] {

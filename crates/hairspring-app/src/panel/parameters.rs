@@ -133,12 +133,12 @@ fn choose(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let groups = document.settings().grooms.get(groom).map_or(1, |g| g.materials.len().max(1));
     if session.second().is_some() {
         ui.horizontal(|ui| {
+            ui.label("Edit:");
             for (second, name) in [(false, "Left"), (true, "Right")] {
                 if ui.selectable_label(session.on_second() == second, name).clicked() {
                     actions.push(Action::Second(second));
                 }
             }
-            ui.label("is changed");
         });
     }
     if grooms.len() > 1 || groups > 1 {

@@ -252,7 +252,10 @@ impl Session {
     /// Finds the differences between the two compared scenes.
     fn compare(&mut self) {
         self.captions = match &self.second {
-            Some(second) => differ::captions(self.document.effective(), second.effective()),
+            Some(second) => {
+                let both = [&self.document, second];
+                differ::captions(both.map(Document::effective), both.map(Document::parsed_text))
+            }
             None => [String::new(), String::new()],
         };
     }

@@ -54,6 +54,10 @@ fn hold(scene: &mut Scene) {
     scene.charged.iter_mut().for_each(|ball| ball.path.clear());
 }
 
+/// Frames at the end in which the fastest point is searched for: one second. Hair may lie still at one time and jump at
+/// another.
+const LAST_FRAMES: u32 = 60;
+
 /// Runs the scene in `path` for `frames` of 1/60 s, held in its first pose if `rest`, and prints medians over
 /// its frames.
 pub(super) fn run(
@@ -75,7 +79,7 @@ pub(super) fn run(
     let count = |counts: &mut Counts, n| counts.0.push(n);
     let threads = rayon::current_num_threads();
     let (simulated, all) = (stage.simulated_points(), stage.simulated_strands());
-    let (mut substeps, mut reset) = (0, 0);
+    let (mut substeps, mut reset, mut fastest) = (0, 0, 0.0_f64);
     let mut progress = console.progress("simulating", frames);
     for frame in 1..=frames {
         let report = stage.step_frame(RATE);
@@ -90,6 +94,9 @@ pub(super) fn run(
         count(&mut looked_up, contacts.distance_queries);
         substeps = report.step.substeps.max(substeps);
         reset += report.step.reset_strands;
+        if frames - frame < LAST_FRAMES {
+            fastest = fastest.max(stage.measure().speed_max);
+        }
         progress.step(|| format!("frame {frame}: {:.2} ms", whole.0[frame as usize - 1] * 1e3));
     }
     drop(progress);
@@ -119,7 +126,7 @@ pub(super) fn run(
             "points_in_contact": points,
             "segments_in_contact": segments,
             "points_looked_up": looked_up,
-            "speed_max_m_s": measure.speed_max,
+            "speed_max_m_s": fastest,
             "non_finite": measure.non_finite,
             "reset_strands": reset,
         }));
@@ -158,8 +165,8 @@ pub(super) fn run(
     ));
     print_line(format_args!("         {} points that need a collider distance", grouped(looked_up)));
     print_line(format_args!(
-        "speed    {:.2} mm/s: the fastest simulated point at the end of the last frame",
-        measure.speed_max * 1e3
+        "speed    {:.2} mm/s: the fastest simulated point in the last second",
+        fastest * 1e3
     ));
     print_line(format_args!("broken   {} values not finite, {reset} strands reset", measure.non_finite));
     Ok(())

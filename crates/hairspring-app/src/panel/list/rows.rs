@@ -1,14 +1,14 @@
 //! The fields of an entry as rows. Every number has its unit, a tooltip and, if it was changed, a reset
 //! button.
 
-use super::super::{Labelled, TipBeside, keys};
+use super::super::{Labelled, TipBeside, keys, number};
 use crate::{
     edit,
     field::{Field, Kind, of, place, tip, unit, words},
     key::Key,
     session::{Action, Session},
 };
-use eframe::egui::{self, DragValue, RichText, Ui};
+use eframe::egui::{self, RichText, Ui};
 use toml_edit::Value;
 
 /// Width of labels [points].
@@ -145,7 +145,7 @@ impl Rows<'_> {
                 if ui.checkbox(&mut never, "never").tip_beside(ui, &tip(field, key)).changed() {
                     return Some((!never).then(|| from.into()));
                 }
-                number(ui, as_number(value?)?, unit(key), &tip(field, key)).map(|x| Some(x.into()))
+                number_field(ui, as_number(value?)?, unit(key), &tip(field, key)).map(|x| Some(x.into()))
             }
             (_, Some(toml::Value::Boolean(on))) => {
                 let mut on = *on;
@@ -157,7 +157,7 @@ impl Rows<'_> {
                 let mut out = Vec::with_capacity(list.len());
                 for (axis, x) in ["x", "y", "z"].into_iter().zip(list) {
                     let x = as_number(x).unwrap_or(0.0);
-                    let new = number(ui, x, "", &format!("{axis}: {}", tip(field, key)));
+                    let new = number_field(ui, x, "", &format!("{axis}: {}", tip(field, key)));
                     changed |= new.is_some();
                     out.push(new.unwrap_or(x));
                 }
@@ -167,7 +167,7 @@ impl Rows<'_> {
                 changed.then(|| Some(Value::from_iter(out)))
             }
             (_, Some(value)) => {
-                number(ui, as_number(value)?, unit(key), &tip(field, key)).map(|x| Some(x.into()))
+                number_field(ui, as_number(value)?, unit(key), &tip(field, key)).map(|x| Some(x.into()))
             }
             (_, None) => None,
         }
@@ -184,16 +184,11 @@ fn as_number(value: &toml::Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|i| i as f64))
 }
 
-fn number(ui: &mut Ui, x: f64, unit: &str, tip: &str) -> Option<f64> {
+fn number_field(ui: &mut Ui, x: f64, unit: &str, tip: &str) -> Option<f64> {
     let mut new = x;
     // A hundredth of the number per point of drag, with a minimum of 0.001 except for very small numbers.
     let speed = (x.abs() * 0.01).max(if x == 0.0 || x.abs() > 1e-4 { 1e-3 } else { 0.0 });
-    let drag = DragValue::new(&mut new).speed(speed);
+    let drag = number::drag(&mut new).speed(speed);
     let drag = if unit.is_empty() { drag } else { drag.suffix(format!(" {unit}")) };
-    let drag = if x != 0.0 && x.abs() < 1e-3 {
-        drag.custom_formatter(|x, _| format!("{x:.2e}"))
-    } else {
-        drag.max_decimals(3)
-    };
     ui.add(drag).tip_beside(ui, tip).changed().then_some(new)
 }
