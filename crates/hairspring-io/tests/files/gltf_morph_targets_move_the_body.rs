@@ -224,7 +224,8 @@ fn wrong_weights_and_motions_that_are_too_long_are_one_sentence() {
     );
 
     let mut long = face("LINEAR", &[0.0, 19_000.0], &[0.0; 4]);
-    let many = long.floats("VEC3", &[0.5; 600]);
+    let many: Vec<f32> = (0..600).map(|k| k as f32 / 600.0).collect();
+    let many = long.floats("VEC3", &many);
     long.primitive()["attributes"]["POSITION"] = json!(many);
     long.primitive()["targets"] = json!([{"POSITION": many}, {"POSITION": many}]);
     let text = read(&long).morphed(0).unwrap_err();
