@@ -8,9 +8,9 @@ use std::fmt::Write;
 fn a_bundle_that_folds_over_at_its_roots_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let mut table = String::from("strand,x,y,z\n");
-    for strand in 0..40u32 {
+    for strand in 0..60u32 {
         let (sin, cos) = (2.4 * strand as f32).sin_cos();
-        let r = 0.01 * ((strand as f32 + 0.5) / 40.0).sqrt();
+        let r = 0.01 * ((strand as f32 + 0.5) / 60.0).sqrt();
         for point in 0..16 {
             let (x, y, z) = (r * cos + 0.003 * point as f32, 0.012 * point as f32, r * sin);
             writeln!(table, "{strand},{x},{y},{z}").unwrap();
