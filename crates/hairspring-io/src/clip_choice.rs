@@ -35,7 +35,8 @@ pub(crate) fn first_note(clips: &[Clip], name: Option<&str>) -> Option<String> {
     })
 }
 
-/// A note if a file has `motions`, by their names, that are not played. `end` is the end of the sentence: what is played.
+/// Returns a note that the motions of a file are not played; `None` for a file without motions. `motions` holds their names.
+/// `end` completes the sentence, such as with the remedy.
 pub(crate) fn unplayed_note(motions: &[&str], end: &str) -> Option<String> {
     (!motions.is_empty()).then(|| {
         let (word, are) = if motions.len() == 1 { ("motion", "is") } else { ("motions", "are") };

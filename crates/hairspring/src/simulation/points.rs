@@ -91,8 +91,8 @@ impl Simulation {
     }
 }
 
-/// Sets the vector of segment `j` to `new` [m]. Its frame rotates with it by the smallest rotation, and the extra
-/// particle of the springs model keeps its place beside it.
+/// Sets the vector of segment `j` to `new` [m]. The segment's frame is rotated by the smallest rotation between the old and
+/// the new vector. So is the offset of the extra particle of the springs model from the middle of the segment.
 pub(super) fn set_segment(strand: &mut StrandMut<'_>, j: usize, new: Vec3) {
     let (model, stride) = (strand.get().elastic(), strand.get().stride());
     let first = j * stride;

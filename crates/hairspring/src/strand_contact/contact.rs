@@ -26,7 +26,7 @@ const LOAD_GAIN: f32 = 0.5;
 
 /// Relative speed from which a contact carries no load [m/s]. A load acts along the normal of the substep before, so
 /// between segments that move it does work, and drives them; between segments at rest it is carried in full.
-const MOVING: f32 = 0.1;
+const LOADED_SPEED_LIMIT: f32 = 0.1;
 
 /// Gap, over the sum of the radii, up to which segments are near each other and bonds hold [1].
 pub const MAX_NEAR_GAP: f32 = 0.15;
@@ -244,7 +244,7 @@ impl Contact {
         } else {
             Vec3::ZERO
         };
-        let still = 1.0 - (velocity.length() / MOVING).min(1.0);
+        let still = 1.0 - (velocity.length() / LOADED_SPEED_LIMIT).min(1.0);
         self.load.along *= still;
         self.load.across *= still;
         (self.last, self.impulse) = (total, Force::default());

@@ -23,8 +23,7 @@
 //!
 //! Every impulse acts on both segments with opposite signs, so momentum is conserved to rounding. Positions
 //! move as if the impulses had acted during the substep; segments turn and keep their lengths. With impulses on
-//! velocities alone, segments overlapped for a substep before they were stopped, and bundles vibrated at ten times
-//! the speed.
+//! velocities alone, segments would overlap for a substep before they are stopped, and bundles would vibrate more.
 //!
 //! Strands that are identical at rest are merged (`hair`), and the number of neighbors of a segment is
 //! limited (`grid`), so the cost of a dense crowd is linear in its size.
