@@ -3,9 +3,11 @@
 //! ```text
 //!   position │            ●──●──●      The displacement D over a run of frame intervals differs by more than the threshold
 //!            │                         from that predicted by the intervals before and after it, v·T: no real motion does
-//!            │  ●──●──●                that. The pose is held until the run's last frame, and changes there at once.
-//!            └──────────────────► time
+//!            │  ●──●──●──              that. The body goes on as in the interval before the run until the run's last
+//!            └──────────────────► time frame, and changes its place there at once.
 //! ```
+//!
+//! If the body stopped during the run, a cut would throw the hair of a moving head forward.
 //!
 //! Cuts are found in the frames of the clip, so they do not depend on the playback rate. The frames of a keyed
 //! motion have the cuts that are found in its keys, see `keyed.rs`. Connected joints
@@ -91,19 +93,16 @@ impl Cuts {
         cuts
     }
 
-    /// Returns local transforms at `time` [s] like [`Clip::sample`], but does not interpolate across a cut;
-    /// shape `[joints]`.
+    /// Returns local transforms at `time` [s] like [`Clip::sample`], but does not interpolate across a cut: until its
+    /// end, the joints go on as in the frame interval before it. Shape `[joints]`.
     pub fn sample(&self, clip: &Clip, time: f64) -> Vec<Trs> {
         let (frame, t) = clip.place(time);
         let place = |tree: &Tree| match tree.cut_at(frame) {
-            Some((before, _)) => (before, 0.0),
+            Some((before, _)) => tree.continued(before, (frame - before) as f32 + t),
             None => (frame, t),
         };
         let places: Vec<(usize, f32)> = self.trees.iter().map(place).collect();
-        let local = |(joint, tree): (usize, &usize)| {
-            let (frame, t) = places[*tree];
-            clip.frame(frame)[joint].lerp(&clip.frame(frame + 1)[joint], t)
-        };
+        let local = |(joint, tree): (usize, &usize)| between(clip, joint, places[*tree]);
         self.tree_of.iter().enumerate().map(local).collect()
     }
 
@@ -119,7 +118,10 @@ impl Cuts {
         let mut moved = Vec::new();
         for (number, tree) in self.trees.iter().enumerate() {
             for (before, after) in tree.cuts.iter().filter(|(_, after)| (first + 1..=last).contains(after)) {
-                let [old, new] = [*before, *after].map(|frame| body.world(clip.frame(frame)));
+                let last = tree.continued(*before, (after - before) as f32);
+                let all = 0..self.tree_of.len();
+                let old = body.world(&all.map(|joint| between(clip, joint, last)).collect::<Vec<_>>());
+                let new = body.world(clip.frame(*after));
                 moved.resize(self.tree_of.len(), None);
                 for joint in (0..self.tree_of.len()).filter(|joint| self.tree_of[*joint] == number) {
                     let by = step(&old[joint], &new[joint]);
@@ -137,6 +139,21 @@ impl Tree {
         let next = self.cuts.partition_point(|(_, after)| *after <= frame);
         self.cuts.get(next).copied().filter(|(before, _)| *before <= frame)
     }
+
+    /// Returns where [`between`] gives the pose that is `later` frames after the frame `before` a cut, if the motion of
+    /// the interval before it goes on. At the start of the clip and right after another cut, the pose is held.
+    fn continued(&self, before: usize, later: f32) -> (usize, f32) {
+        match before.checked_sub(1) {
+            Some(earlier) if self.cut_at(earlier).is_none() => (earlier, 1.0 + later),
+            _ => (before, 0.0),
+        }
+    }
+}
+
+/// Returns the local transform of a joint `t` frame intervals after `frame`, on the straight path to the next frame.
+/// Beyond 1, the path goes on.
+fn between(clip: &Clip, joint: usize, (frame, t): (usize, f32)) -> Trs {
+    clip.frame(frame)[joint].lerp(&clip.frame(frame + 1)[joint], t)
 }
 
 /// Returns the rigid motion between two matrices of a joint.
@@ -277,6 +294,35 @@ mod tests {
         // Keys that are far apart in time are far apart in space.
         assert_eq!(cut(&[0.0, 10.0, 20.0, 20.0], 0.01), []);
         assert_eq!(cut(&[], 30.0), []);
+    }
+
+    /// A head that walks and nods, with jumps in a clip of 60 Hz that are spread over three intervals.
+    #[test]
+    fn a_moving_body_goes_on_until_the_end_of_a_cut() {
+        let (speed, spin) = (0.02f32, 0.01f32);
+        let jump = |frame: usize| [0.0, 0.4, 2.5, 5.0][frame.saturating_sub(10).min(3)];
+        let frame = |f: usize| Trs {
+            translation: Vec3::X * (speed * f as f32 + jump(f)),
+            rotation: Quat::from_rotation_x(spin * f as f32),
+            scale: Vec3::ONE,
+        };
+        let samples = (0..30).map(frame).collect();
+        let clip = Clip { name: "walk".into(), rate: 60.0, joint_count: 1, samples };
+        let body = Body::rigid(crate::body::Mesh::default());
+        let cuts = Cuts::new(&body, &clip, 0, 1.0);
+        assert_eq!(cuts.trees[0].cuts, [(10, 13)]);
+        for k in 0..=116 {
+            let time = f64::from(k) / 240.0;
+            let frame = 60.0 * time as f32;
+            let after = if k < 52 { 0.0 } else { 5.0 };
+            let pose = cuts.sample(&clip, time)[0];
+            let off = (pose.translation.x - speed * frame - after).abs();
+            let turned = pose.rotation.angle_between(Quat::from_rotation_x(spin * frame));
+            assert!(off < 1e-5 && turned < 1e-3, "{off} m and {turned} rad off at frame {frame}");
+        }
+        let moved = cuts.motion_between(&body, &clip, (0.21, 0.22))[0].unwrap();
+        assert!(moved.translation.distance(Vec3::X * 5.0) < 1e-5, "{moved:?}");
+        assert!(moved.rotation.angle_between(Quat::IDENTITY) < 1e-3, "{moved:?}");
     }
 
     #[test]
