@@ -129,7 +129,7 @@ impl Totals {
         if start.coils > 0 {
             let coils = start.coils;
             print_line(format_args!(
-                "start    {coils} strands coil by more than one and a half turns; they are simulated as rods, because the curvature model has no twist"
+                "start    {coils} strands turn by more than half a turn; they are simulated as rods, because the curvature model has no twist"
             ));
         }
         if start.held_back > 0 {

@@ -9,9 +9,9 @@ use hairspring::{collide::ColliderShape, simulation::VolumeReport};
 /// and sheets only.
 const THIN_HULL: f32 = 5e-3;
 
-/// Radius of a rod or ball below which hair may pass through it, over the length of a segment [1]. The contact of segments
-/// permits this depth.
-const THIN_ROD: f32 = 0.015;
+/// Radius of a rod or ball below which hair may pass through it, over the length of a segment [1]. At 0.0064, a rod loses 2
+/// to 5 of 60 strands, and at 0.01 none.
+const THIN_ROD: f32 = 0.0075;
 
 /// Depth of the shallowest root in a collider from which on it is reported [m]. Roots lie less deep in a shape that stands
 /// for the head.

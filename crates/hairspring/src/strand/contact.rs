@@ -23,6 +23,7 @@ use super::{
     colliders::{contact, surface_displacement},
     friction::{Friction, FrictionSpring},
     model::stretch::STRETCH,
+    segment::max_tolerance,
     system::System,
     tile::{Tile, rest, state},
 };
@@ -73,7 +74,7 @@ pub fn assemble_contact<S: Simd, const B: usize>(
     if !force.simd_gt(0.0).any_true() {
         return;
     }
-    let Surface { distance: mut gap, mut normal, carried } =
+    let Surface { distance: mut gap, mut normal, carried, .. } =
         nearest(simd, step.colliders, x + step.root.position, [passes(simd, tile, i); 2]);
     gap -= load(simd, &tile.rest[i][rest::CLEARANCE]);
 
@@ -127,6 +128,8 @@ pub struct Surface<S: Simd> {
     pub normal: V3<S>,
     /// Displacement of the surface there in the substep [m].
     pub carried: V3<S>,
+    /// The largest permitted depth of a segment there [m]; see [`max_tolerance`].
+    pub tolerance: F<S>,
 }
 
 /// Finds the surface nearest to `world`, without the colliders that are `passed`. Not inlined: all models and sweeps
@@ -136,8 +139,8 @@ pub fn nearest<S: Simd>(simd: S, colliders: &[ColliderPose], world: V3<S>, passe
     simd.vectorize(
         #[inline(always)]
         || {
-            let zero = V3::zero(simd);
-            let mut surface = Surface { distance: F::splat(simd, f32::MAX), normal: zero, carried: zero };
+            let (zero, most) = (V3::zero(simd), F::splat(simd, f32::MAX));
+            let mut surface = Surface { distance: most, normal: zero, carried: zero, tolerance: most };
             for (k, pose) in colliders.iter().enumerate() {
                 let (distance, normal) = contact(simd, pose, world);
                 let nearest = distance.simd_lt(surface.distance) & !is_passed(passed, k);
@@ -145,6 +148,8 @@ pub fn nearest<S: Simd>(simd: S, colliders: &[ColliderPose], world: V3<S>, passe
                 surface.distance = nearest.select(distance, surface.distance);
                 surface.normal = V3::select(nearest, normal, surface.normal);
                 surface.carried = V3::select(nearest, carried, surface.carried);
+                let tolerance = F::splat(simd, max_tolerance(pose));
+                surface.tolerance = nearest.select(tolerance, surface.tolerance);
             }
             surface
         },

@@ -19,7 +19,7 @@ use super::{
     friction::Friction,
     relax::{Correction, relax},
     scratch::Scratch,
-    segment::{resolve_segment_contact, segment_tolerance},
+    segment::{max_tolerance, resolve_segment_contact, segment_tolerance},
     tether::{apply_lra, exceeds_lra},
     tile::{Tile, history, rest, segment_contact, state},
     truss::beside,
@@ -221,8 +221,8 @@ fn needs_contact_test<S: Simd>(
     // A separate loop: in a common loop, the compiler would hoist the segment's computations to where they
     // are not needed.
     if !tile.segment_contacts.is_empty() {
-        let tolerance = segment_tolerance(simd, tile, i);
         for pose in step.colliders {
+            let tolerance = segment_tolerance(simd, tile, i, F::splat(simd, max_tolerance(pose)));
             if segment_may_intersect(simd, pose, (world, e), tolerance).any_true() {
                 return true;
             }

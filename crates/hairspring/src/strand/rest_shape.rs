@@ -176,8 +176,8 @@ pub struct Start {
     /// cannot represent stiffer ones in a substep of this length. More substeps help. (Springs that hold the extra
     /// particles of a truss are not counted.)
     pub held_back: usize,
-    /// Strands with the curvature model that are simulated as rods, because they coil by more than one and a
-    /// half turns and that model has no twist.
+    /// Strands with the curvature model that are simulated as rods, because they turn by more than half a turn
+    /// and that model has no twist.
     pub coils: usize,
 }
 

@@ -33,6 +33,9 @@ use glam::Vec3;
 /// points hold the segment, and a head with segments of a centimeter is a smooth body.
 const SAG: f32 = 0.015;
 
+/// Permitted depth in a thin rod or box, over half of its thickness [1].
+const SHARE_OF_THIN: f32 = 0.5;
+
 /// Place closest to the inner end whose depth the outer end corrects in full, as a fraction of the segment
 /// [1]. Closer places are left to the inner end, in the next solve: such a short lever would throw the outer
 /// end.
@@ -79,12 +82,19 @@ pub fn segment_contact_unneeded(length: f32, radius: f32) -> bool {
     length * (1.0 + LIMIT).powi(2) <= 8.0 * SAG * radius
 }
 
-/// Permitted depth of the segment that ends at point `i`, between its ends [m]: the authored depth plus the
-/// tolerance for smooth bodies.
+/// Returns the largest depth that [`segment_tolerance`] permits in this collider [m]. In a rod thinner than the tolerance
+/// for smooth bodies, hair would pass through its axis.
 #[inline(always)]
-pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize) -> F<S> {
+pub fn max_tolerance(pose: &ColliderPose) -> f32 {
+    pose.edges.as_ref().map_or(f32::INFINITY, |edges| SHARE_OF_THIN * edges.half_thickness())
+}
+
+/// Permitted depth of the segment that ends at point `i`, between its ends [m]: the authored depth plus the
+/// tolerance for smooth bodies, which is at most `max`; see [`max_tolerance`].
+#[inline(always)]
+pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize, max: F<S>) -> F<S> {
     let inner = i - tile.layout.model.stride();
-    let tolerance = load(simd, &tile.rest[inner][rest::LENGTH]) * SAG;
+    let tolerance = (load(simd, &tile.rest[inner][rest::LENGTH]) * SAG).min(max);
     tile.rest_penetration.get(i).map_or(tolerance, |authored| tolerance - load(simd, authored))
 }
 
@@ -107,7 +117,7 @@ pub fn resolve_segment_contact<S: Simd>(
 ) -> V3<S> {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let a = step.root.position + inner.x;
-    let tolerated = -segment_tolerance(simd, tile, i);
+    let tolerated = -segment_tolerance(simd, tile, i, F::splat(simd, max_tolerance(pose)));
     // No motion of the segment takes its inner end out, and a force on it would grow without bound.
     let held = before.simd_lt(tolerated);
     let clear = held.select(before, tolerated);

@@ -1,6 +1,6 @@
 //! Promise: thin and fast colliders hold back the hair that they touch. A rod of 1 mm radius, dragged at 0.02 to 1 m/s
 //! through hanging hair, holds back every strand, and so does a box 1 to 4 mm thick at 0.05 to 3 m/s, however long it is.
-//! Hair that falls on a rod of 1 mm radius lies over it. A rod that crosses 15 cm in one frame and stops holds its hair in
+//! Hair that falls on a rod of 1 mm radius lies over it, and so it does on a rod with a radius of 0.75 % of a segment. A rod that crosses 15 cm in one frame and stops holds its hair in
 //! the following frames.
 
 use glam::{Mat3, Vec3};
@@ -15,6 +15,7 @@ use hairspring_test::{FRAME, REST, points, roots, translation};
 
 const POINTS: usize = 32;
 const LENGTH: f32 = 0.25;
+const SEGMENT: f32 = LENGTH / (POINTS - 1) as f32;
 
 /// A simulation of strands that start at `starts` and extend in `direction`.
 fn hair(
@@ -23,7 +24,7 @@ fn hair(
     sag_free: bool,
 ) -> (Simulation, Vec<RigidTransform>) {
     let strands = starts.map(|root| {
-        let along = |i: usize| direction * (LENGTH * i as f32 / (POINTS - 1) as f32);
+        let along = |i: usize| direction * (SEGMENT * i as f32);
         (0..POINTS).map(move |i| root + along(i)).collect::<Vec<_>>()
     });
     let groom = Groom::from_strands(strands, 40e-6);
@@ -96,6 +97,14 @@ fn a_rod_of_1_mm_radius_holds_back_hair() {
 }
 
 #[test]
+fn a_rod_of_a_hundredth_of_a_segment_holds_back_hair() {
+    for speed in [0.05, 0.3, 1.0] {
+        let held = drag(&rod(0.01 * SEGMENT), speed, 20, 60);
+        assert_eq!(held, 60, "{speed} m/s");
+    }
+}
+
+#[test]
 fn a_thin_box_holds_back_hair() {
     let mut failures = Vec::new();
     for thickness in [0.004, 0.002, 0.001] {
@@ -123,8 +132,9 @@ fn a_rod_that_stops_holds_back_hair() {
 
 #[test]
 fn hair_that_falls_on_a_thin_rod_lies_over_it() {
-    let radius = 0.001;
-    for height in [0.002, 0.02, 0.1] {
+    for (radius, height) in
+        [(0.001, 0.002), (0.001, 0.02), (0.001, 0.1), (0.0003, 0.02), (0.0075 * SEGMENT, 0.02)]
+    {
         let root = |s: usize| Vec3::new(-0.05 - 0.0004 * (s % 20) as f32, 0.0, 0.0015 * (s as f32 - 100.0));
         let (mut simulation, roots) = hair((0..200).map(root), Vec3::X, false);
         let y = -height - radius;
@@ -138,7 +148,7 @@ fn hair_that_falls_on_a_thin_rod_lies_over_it() {
             strand.windows(2).any(|pair| crosses(&pair)) && strand.windows(2).filter(crosses).all(above)
         };
         let count = points(&simulation).chunks(POINTS).filter(lies_over).count();
-        assert_eq!(count, 200, "from {height} m some strands do not lie over the rod");
+        assert_eq!(count, 200, "from {height} m some strands do not lie over the rod of {radius} m");
     }
 }
 

@@ -5,9 +5,10 @@ use glam::{Quat, Vec3};
 use hairspring::{
     groom::Groom,
     material::{Material, Model, preset},
+    settings::Solver,
     simulation::Simulation,
 };
-use hairspring_test::{FRAME, farthest, points, step, translation};
+use hairspring_test::{FRAME, REST, farthest, points, step, translation};
 use std::f32::consts::TAU;
 
 /// A strand of 20 segments of 5 mm that turns by `degrees` at every third joint, each time about another
@@ -79,16 +80,58 @@ fn coils_come_to_rest() {
     }
 }
 
-/// The curvature model has no twist. It does not hold coils at rest (`first_frame_equals_the_groom.rs`), but no
-/// strand is reset.
+/// The curvature model has no twist, so it leaves strands that turn by more than half a turn to the rod.
 #[test]
-fn coils_without_twist_stay_finite() {
+fn coils_with_the_curvature_model_come_to_rest() {
     let material = Material { model: Model::Curvature, ..preset("curly").unwrap() };
-    for turns in [0.75, 1.5, 2.0, 3.0, 6.0, 12.0] {
-        for gravity in [Vec3::ZERO, Vec3::NEG_Y * 9.81] {
-            let [at_rest, shaken] = speeds(&[coil(turns)], material.clone(), gravity);
-            println!("{turns} turns, gravity {gravity}: {at_rest} m/s at rest, {shaken} m/s after a shake");
-            assert!(at_rest.is_finite() && shaken.is_finite(), "{turns} turns, gravity {gravity}");
+    for turns in [0.25, 0.5, 0.75, 1.5, 2.0, 3.0, 6.0, 12.0] {
+        come_to_rest(&format!("{turns} turns"), &[coil(turns)], &material);
+    }
+}
+
+/// A strand of 32 points that winds about the axis `way`, with this `radius` and `pitch` of its helix [m].
+fn wave(way: Vec3, radius: f32, pitch: f32, length: f32) -> Vec<Vec3> {
+    let way = way.normalize();
+    let (a, b) = way.any_orthonormal_pair();
+    let turns = length / pitch.hypot(TAU * radius);
+    let at = |i: usize| {
+        let turn = turns * i as f32 / 31.0;
+        let (sin, cos) = (TAU * turn).sin_cos();
+        way * (pitch * turn) + (a * cos + b * sin) * (radius * (4.0 * turn).min(1.0))
+    };
+    (0..32).map(at).collect()
+}
+
+/// Waves that fall from their authored shape, in the curvature model.
+#[test]
+fn waves_with_the_curvature_model_come_to_rest() {
+    let mut waves = Vec::new();
+    for radius in [0.002, 0.004, 0.006, 0.008] {
+        for pitch in [0.04, 0.06, 0.08, 0.1] {
+            for length in [0.15, 0.25, 0.35, 0.4] {
+                for rise in [-0.4, 0.0, 0.4, 0.9] {
+                    waves.push(wave(Vec3::new(1.0, rise, 0.3), radius, pitch, length));
+                }
+            }
         }
+    }
+    let wavy = Material { model: Model::Curvature, ..preset("wavy").unwrap() };
+    for damping in [wavy.damping, 0.0] {
+        let groom = Groom::from_strands(&waves, 60e-6);
+        let mut simulation = Simulation::builder(groom)
+            .materials(&[Material { damping, ..wavy.clone() }])
+            .solver(Solver { sag_free: false, ..Solver::default() })
+            .build()
+            .unwrap();
+        let coils = simulation.start().coils;
+        assert!((1..waves.len()).contains(&coils), "{coils} of {} waves are rods", waves.len());
+        let mut frame = || {
+            let before = points(&simulation);
+            step(&mut simulation, REST, &vec![REST; waves.len()], &[]);
+            farthest(&before, &points(&simulation)) / FRAME
+        };
+        let speed = (0..60 * 30).map(|_| frame()).skip(60 * 29).fold(0.0, f32::max);
+        println!("damping {damping} s: {speed} m/s, {coils} of {} waves are rods", waves.len());
+        assert!(speed < 1e-3, "damping {damping} s: {speed} m/s");
     }
 }

@@ -22,9 +22,9 @@ use crate::{
 use fearless_simd::Level;
 
 /// Bending in a frame that is parallel-transported along the strand and has no twist. It is exact and
-/// cheapest for strands that are straight at rest, where the frame does not matter (see `straight`). A coil
-/// slowly loses its shape in it, and swinging curls gain energy, because the force neglects its effect on the
-/// frames farther along the strand.
+/// cheapest for strands that are straight at rest, where the frame does not matter (see `straight`). Swinging
+/// curls gain energy in it, because the force neglects its effect on the frames farther along the strand. Strands that turn
+/// by more than half a turn therefore use the rod (see `simulation/build.rs`).
 #[derive(Clone, Copy)]
 pub struct Curvature<S: Simd> {
     /// The frame's normal on segment i.
