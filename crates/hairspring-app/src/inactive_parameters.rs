@@ -6,8 +6,7 @@ use crate::{
     key::Key,
     parameter::{self, Parameter},
 };
-use hairspring::settings::When;
-use hairspring_io::scene::parameters;
+use hairspring_io::scene::{inactive, parameters};
 
 /// A scene and the selection that conditions are evaluated for.
 struct Selection<'a> {
@@ -27,44 +26,6 @@ impl Selection<'_> {
         };
         key.look_up(self.document.effective())
     }
-
-    fn holds(&self, when: &When) -> bool {
-        let word = |name: &str| self.value(name).and_then(toml::Value::as_str).unwrap_or_default();
-        match *when {
-            When::Always => true,
-            When::On(name) | When::Above0(name) | When::Not0(name) | When::Has(name) => {
-                self.value(name).is_some_and(is_set)
-            }
-            When::Given(name) => self.value(name).is_some(),
-            When::NotGiven(name) | When::HasNot(name) => self.value(name).is_none(),
-            When::Is(name, words) => words.contains(&word(name)),
-            When::IsNot(name, words) => !words.contains(&word(name)),
-            When::All(parts) => parts.iter().all(|part| self.holds(part)),
-            When::Any(parts) => parts.iter().any(|part| self.holds(part)),
-        }
-    }
-
-    /// The part of an unmet condition that is unmet, as a phrase.
-    fn unmet(&self, when: &When, label: &dyn Fn(&str) -> String) -> String {
-        match when {
-            When::All(parts) => {
-                let unmet = parts.iter().filter(|part| !self.holds(part));
-                unmet.map(|part| self.unmet(part, label)).collect::<Vec<_>>().join(", and ")
-            }
-            when => when.phrase(label),
-        }
-    }
-}
-
-/// Whether a switch is on, a number is above 0, one of several numbers is not 0, or a list has entries.
-fn is_set(value: &toml::Value) -> bool {
-    match value {
-        toml::Value::Boolean(on) => *on,
-        toml::Value::Integer(n) => *n > 0,
-        toml::Value::Float(x) => *x > 0.0,
-        toml::Value::Array(list) => list.iter().any(|x| x.as_float() != Some(0.0)),
-        _ => true,
-    }
 }
 
 impl Parameter {
@@ -72,14 +33,15 @@ impl Parameter {
     pub fn inactive_reason(&self, document: &Document, (groom, group): (usize, usize)) -> Option<String> {
         let groom = Key::top("groom").place(groom);
         let selection = Selection { document, material: groom.field("material").place(group), groom };
-        let when = self.definition().when;
+        let unmet = inactive::unmet(&self.definition().when, &|name| selection.value(name));
         // A parameter is named by its label, and by its group if that is another one.
         let label = |name: &str| match parameter::ALL.iter().find(|p| p.full_name() == name) {
             Some(other) if other.group == self.group => format!("\"{}\"", other.label),
             Some(other) => format!("\"{}\" ({})", other.label, other.group.name()),
             None => parameters::contents(name).unwrap_or(name).to_owned(),
         };
-        (!selection.holds(&when)).then(|| format!("No effect unless {}.", selection.unmet(&when, &label)))
+        let unmet: Vec<String> = unmet.iter().map(|part| part.phrase(&label)).collect();
+        (!unmet.is_empty()).then(|| format!("No effect unless {}.", unmet.join(", and ")))
     }
 }
 

@@ -86,6 +86,9 @@ use std::sync::atomic::Ordering::Relaxed;
 /// Initial size of the window [points].
 const SIZE: [f32; 2] = [1360.0, 860.0];
 
+/// Minimum size of the window [points].
+const MIN_SIZE: [f32; 2] = [640.0, 480.0];
+
 /// How a window was closed.
 pub struct Ended {
     /// Number of errors that lines of the script caused. Each was printed to standard error with the number of
@@ -115,6 +118,7 @@ pub fn run(options: Options) -> Result<Ended, RunError> {
             .with_title("Hairspring")
             .with_app_id("hairspring")
             .with_inner_size(SIZE)
+            .with_min_inner_size(MIN_SIZE)
             .with_drag_and_drop(true),
         // The hair's picture has its own dithering, and the rest is flat. Software drivers take as long for
         // dithering as for the text.

@@ -161,11 +161,14 @@ fn handle_at(pen: &OverlayPainter, handle: &Handle, touched: bool) {
     );
     if touched || handle.is_wind() {
         let place = if touched { at } else { pen.at(handle.arrow().unwrap_or(handle.at)).unwrap_or(at) };
-        let (place, align) = (place + egui::vec2(0.0, 14.0), egui::Align2::CENTER_TOP);
-        let font = egui::FontId::proportional(13.0);
+        let (font, white) = (egui::FontId::proportional(13.0), Color32::from_white_alpha(220));
+        let name = pen.painter.layout_no_wrap(handle.name.clone(), font, white);
+        let mut place = egui::Align2::CENTER_TOP.anchor_size(place + egui::vec2(0.0, 14.0), name.size()).min;
+        // A name near the edge of the picture stays on it.
+        place.x = place.x.min(pen.rect.right() - name.size().x).max(pen.rect.left());
         let shade = Color32::from_black_alpha(170);
-        pen.painter.text(place + egui::vec2(1.0, 1.0), align, &handle.name, font.clone(), shade);
-        pen.painter.text(place, align, &handle.name, font, Color32::from_white_alpha(220));
+        pen.painter.galley_with_override_text_color(place + egui::vec2(1.0, 1.0), name.clone(), shade);
+        pen.painter.galley(place, name, white);
     }
 }
 

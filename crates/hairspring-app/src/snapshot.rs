@@ -120,6 +120,8 @@ pub struct StageSnapshot {
     pub measure: Measure,
     /// Energy of the same moment.
     pub energy: Energy,
+    /// Compute times of the last frame.
+    pub report: FrameReport,
     /// Report of the volume method, if one is on.
     pub volume: Option<VolumeReport>,
     /// Current transforms of the scene's listed objects.
@@ -146,6 +148,7 @@ impl StageSnapshot {
             anchor: RigidTransform::default(),
             measure: Measure::default(),
             energy: Energy::default(),
+            report: FrameReport::default(),
             volume: None,
             carried: Carried::default(),
             pushed: None,
@@ -392,9 +395,7 @@ pub struct Snapshot {
     pub cached: CachedFrames,
     /// The scene, and the one that it is compared with.
     pub stages: Vec<StageSnapshot>,
-    /// Time of each stage of the step.
-    pub report: FrameReport,
-    /// Total time of a step, averaged over some steps.
+    /// Total compute time of a frame, for all stages, averaged over some frames.
     pub took: Duration,
     /// Number of strands that were reset since the scene was opened.
     pub reset_strands: usize,

@@ -9,13 +9,13 @@ mod status_overlay;
 use crate::{
     AppError,
     bake::{self, BakeRequest, Baker},
-    document::{Document, builtin_text, replaces_scene},
+    document::{Document, builtin_text, new_scene, replaces_scene},
     finger::Finger,
     memory,
-    painter::{Drawn, Painter},
+    painter::{self, Drawn, Painter},
     panel::{
         files::{Decision, Files},
-        help, inspect, parameters,
+        graphs, help, parameters,
         presets::Presets,
         recovered, transport,
     },
@@ -68,7 +68,7 @@ pub struct App {
     session: Session,
     view: View,
     painters: Vec<Painter>,
-    history: inspect::History,
+    history: graphs::History,
     files: Files,
     presets: Presets,
     filter: String,
@@ -114,7 +114,7 @@ impl App {
         let hairs = if painters[0].gpu().is_some() { (100_000, 2_000) } else { (8_000, 500) };
         let document = match document {
             Some(document) => document,
-            None => Document::new("scene.toml".as_ref(), builtin_text("wavy", Some(hairs)))?,
+            None => Document::new(&new_scene(), builtin_text("wavy", Some(hairs)))?,
         };
         let session =
             Session::new(document, painters[0].spared(), painters[0].gpu(), painters[0].wake(&ctx))?;
@@ -132,7 +132,7 @@ impl App {
             session,
             view: View::default(),
             painters,
-            history: inspect::History::default(),
+            history: graphs::History::default(),
             files: Files::default(),
             presets: Presets::default(),
             filter: String::new(),
@@ -310,7 +310,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = &ui.ctx().clone();
         let _ = frame;
-        let snapshot = self.session.latest();
+        let snapshot = painter::receive(&mut self.painters, ctx, || self.session.latest());
         let mut actions = Vec::new();
         self.hold_back_close(ctx);
         if self.leaving.is_none() {
@@ -350,22 +350,11 @@ impl eframe::App for App {
                 parameters::show(ui, &self.session, &mut self.filter, camera, &mut actions);
             });
         }
-        let notes: Vec<String> = self.painters.iter().map(Painter::note).collect();
         egui::CentralPanel::no_frame().show(ui, |ui| {
             self.picture(ui, snapshot.as_ref(), &mut actions);
         });
         if let Some(snapshot) = snapshot.as_deref().filter(|_| self.open.panels) {
-            status_overlay::corner(ctx, self.rect, egui::Align2::LEFT_BOTTOM, |ui| {
-                inspect::figures(ui, &self.session, snapshot, &notes.join("; "));
-            });
-            if snapshot.picked.is_some() {
-                // Below the caption of a side.
-                let min = self.rect.min + egui::vec2(0.0, self.caption.max(22.0));
-                let below = egui::Rect::from_min_max(min, self.rect.max);
-                status_overlay::corner(ctx, below, egui::Align2::LEFT_TOP, |ui| {
-                    inspect::picked(ui, &self.session, snapshot, &mut actions)
-                });
-            }
+            self.show_figures(ctx, snapshot, &mut actions);
         }
         self.windows(ctx, &mut actions);
         self.show_status(ctx);

@@ -46,9 +46,9 @@ impl App {
             let response = ui.interact(rect, ui.scope_id().with(("picture", k)), Sense::click_and_drag());
             if k == 0 {
                 self.rect = rect;
-                self.view.follow_range(stage, guides);
+                self.view.follow_range(&stage.values, guides, self.session.playing());
             }
-            let moment = self.painters[k].moment(ui.ctx(), snapshot);
+            let moment = self.painters[k].moment(snapshot).clone();
             let seen = moment.stages.get(k).unwrap_or(stage);
             // Handles belong to the scene whose parameters are shown.
             let own = (k == 1) == self.session.on_second() && self.view.overlays.handles;

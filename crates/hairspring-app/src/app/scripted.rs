@@ -91,7 +91,7 @@ impl App {
             }
             Line::Pace => {
                 println!(
-                    "{}; a step in {:.1} ms",
+                    "{}; a frame in {:.1} ms",
                     self.painters[0].note(),
                     1e3 * snapshot.took.as_secs_f32()
                 );

@@ -1,16 +1,47 @@
 //! Overlays on the picture: progress, messages, figures, and the legend of the color ramp.
 
 use super::{App, MESSAGE};
-use crate::{snapshot::StageSnapshot, text::counted, view::View};
+use crate::{
+    painter::Painter,
+    panel::inspect,
+    session::Action,
+    snapshot::{Snapshot, StageSnapshot},
+    text::counted,
+    view::View,
+};
 use eframe::egui::{self, Color32, Ui};
 use hairspring_scene::stage::Value;
 
+/// Smallest height of a picture that figures are shown on [points].
+const FIGURES: f32 = 240.0;
 /// Distance of a message from the picture's upper edge [points].
 const MESSAGE_TOP: f32 = 66.0;
-/// Width of the color legend, and its distance from the edge [points].
+/// Largest width of the color legend, with its distance from the edge [points].
 const LEGEND: f32 = 190.0;
+/// Distance of the color legend from the right edge [points], and its number of pieces.
+const LEGEND_EDGE: f32 = 20.0;
+const LEGEND_PIECES: u32 = 34;
 
 impl App {
+    /// Shows the figures of all hair and of the picked strand, unless the picture is too small for them.
+    pub(super) fn show_figures(&self, ctx: &egui::Context, snapshot: &Snapshot, actions: &mut Vec<Action>) {
+        if self.whole.height() < FIGURES {
+            return;
+        }
+        let notes: Vec<String> = self.painters.iter().map(Painter::note).collect();
+        let figures = corner(ctx, self.whole, egui::Align2::LEFT_BOTTOM, |ui| {
+            inspect::figures(ui, &self.session, snapshot, &notes.join("; "));
+        });
+        if snapshot.picked.is_some() {
+            // Below the caption of a side, and above the figures.
+            let top = self.rect.top() + self.caption.max(22.0);
+            let free = egui::Rect::from_x_y_ranges(self.rect.x_range(), top..=figures.top());
+            corner(ctx, free, egui::Align2::LEFT_TOP, |ui| {
+                inspect::picked(ui, &self.session, snapshot, actions);
+            });
+        }
+    }
+
     /// Shows the progress of a recording, and the last message.
     pub(super) fn show_status(&mut self, ctx: &egui::Context) {
         let corner = self.whole.min + egui::vec2(20.0, 40.0);
@@ -81,6 +112,9 @@ impl App {
 /// Color behind text on the picture, so that it can be read on any background.
 const BEHIND: Color32 = Color32::from_black_alpha(205);
 
+/// Distance of text in a corner from the edges of the picture [points].
+const CORNER: f32 = 10.0;
+
 /// Distance of a caption from the edges of its side [points].
 const CAPTION: egui::Vec2 = egui::vec2(10.0, 8.0);
 
@@ -108,23 +142,32 @@ pub(super) fn caption(painter: &egui::Painter, side: egui::Rect, text: String, l
     text_on_picture(painter, side.min + CAPTION, egui::Align2::LEFT_TOP, text, (16.0, room.max(80.0)))
 }
 
-/// Shows text in a corner of the picture, on the left.
-pub(super) fn corner(ctx: &egui::Context, rect: egui::Rect, align: egui::Align2, show: impl FnOnce(&mut Ui)) {
-    let inside = rect.shrink2(egui::vec2(10.0, 10.0));
-    egui::Area::new(egui::Id::unique(("figures", align.y() == egui::Align::TOP)))
+/// Shows text in a corner of `rect`, on the left. It wraps at the edge of `rect` and covers nothing outside. Returns its
+/// rectangle.
+fn corner(
+    ctx: &egui::Context,
+    rect: egui::Rect,
+    align: egui::Align2,
+    show: impl FnOnce(&mut Ui),
+) -> egui::Rect {
+    let inside = rect.shrink(CORNER);
+    let area = egui::Area::new(egui::Id::unique(("figures", align.y() == egui::Align::TOP)))
         .fixed_pos(align.pos_in_rect(&inside))
         .pivot(align)
+        .constrain_to(inside)
         .show(ctx, |ui| {
+            ui.set_clip_rect(inside);
             ui.style_mut().interaction.selectable_labels = false;
-            // Keeps a figure on the line of its name.
-            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
-            egui::Frame::new().fill(BEHIND).corner_radius(4.0).inner_margin(6.0).show(ui, |ui| {
+            let frame = egui::Frame::new().fill(BEHIND).corner_radius(4.0).inner_margin(6.0);
+            ui.set_max_width((inside.width() - frame.total_margin().sum().x).max(0.0));
+            frame.show(ui, |ui| {
                 let visuals = ui.visuals_mut();
                 visuals.override_text_color = Some(Color32::from_gray(235));
                 visuals.weak_text_color = Some(Color32::from_gray(200));
                 show(ui);
             });
         });
+    area.response.rect
 }
 
 /// Shows the legend of the color ramp.
@@ -135,7 +178,8 @@ pub(super) fn legend(
     view: &View,
     stage: &StageSnapshot,
 ) {
-    let at = rect.right_top() + egui::vec2(-LEGEND, 14.0);
+    let at = rect.right_top() + egui::vec2(-LEGEND.min(rect.width() - LEGEND_EDGE), 14.0);
+    let width = rect.right() - LEGEND_EDGE - at.x;
     let text = |place: egui::Pos2, align, text: String| {
         text_on_picture(painter, place, align, text, (13.0, f32::INFINITY));
     };
@@ -148,17 +192,16 @@ pub(super) fn legend(
         return;
     }
     if value == Value::Density && stage.volume.is_none() {
-        let right = at + egui::vec2(LEGEND - 20.0, 18.0);
+        let right = at + egui::vec2(width, 18.0);
         text(right, egui::Align2::RIGHT_TOP, "known with a volume method (Volume)".into());
         return;
     }
-    let (bar, height) =
-        (egui::Rect::from_min_size(at + egui::vec2(0.0, 20.0), egui::vec2(170.0, 10.0)), 10.0);
-    for k in 0..34 {
-        let share = k as f32 / 33.0;
+    let bar = egui::Rect::from_min_size(at + egui::vec2(0.0, 20.0), egui::vec2(width, 10.0));
+    let piece = egui::vec2(width / LEGEND_PIECES as f32, bar.height());
+    for k in 0..LEGEND_PIECES {
+        let share = k as f32 / (LEGEND_PIECES - 1) as f32;
         let c = crate::ramp::color(share, [0.0, 1.0]).to_array().map(|x| (x.powf(1.0 / 2.2) * 255.0) as u8);
-        let piece =
-            egui::Rect::from_min_size(bar.min + egui::vec2(5.0 * k as f32, 0.0), egui::vec2(5.0, height));
+        let piece = egui::Rect::from_min_size(bar.min + egui::vec2(k as f32 * piece.x, 0.0), piece);
         painter.rect_filled(piece, 0.0, Color32::from_rgb(c[0], c[1], c[2]));
     }
     text(bar.left_bottom(), egui::Align2::LEFT_TOP, "0".into());

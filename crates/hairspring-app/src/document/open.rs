@@ -96,9 +96,9 @@ impl Document {
     }
 }
 
-/// The path of a scene without a file.
+/// The path of a scene without a file, in the current folder. Its name is what errors of the scene begin with.
 pub fn new_scene() -> PathBuf {
-    std::env::current_dir().unwrap_or_default().join("scene.toml")
+    "the unsaved scene".into()
 }
 
 #[cfg(test)]
@@ -129,6 +129,13 @@ mod tests {
         assert_eq!(text(&file("d.toml", "[builtin]\n")), "[builtin]\n");
         let why = Document::open_any("e.gif".as_ref(), None).err().unwrap().to_string();
         assert!(why.contains("e.gif") && KINDS.iter().flat_map(|k| k.1).all(|e| why.contains(e)), "{why}");
+    }
+
+    #[test]
+    fn errors_of_a_scene_without_a_file_name_no_file() {
+        let mut document = Document::new(&new_scene(), builtin_text("wavy", None)).unwrap();
+        let why = document.set(&"solver.substeps".parse().unwrap(), Some((-1).into())).unwrap_err();
+        assert!(why.to_string().starts_with("the unsaved scene, line "), "{why}");
     }
 
     #[test]

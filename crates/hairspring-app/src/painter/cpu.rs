@@ -222,7 +222,7 @@ impl CpuPainter {
     }
 
     /// Receives a finished picture.
-    pub fn look(&mut self, ctx: &egui::Context) {
+    pub fn receive(&mut self, ctx: &egui::Context) {
         match self.done.try_recv() {
             Ok(done) => self.show(ctx, done),
             Err(TryRecvError::Disconnected) => self.busy.store(true, Relaxed),
@@ -330,45 +330,5 @@ impl CpuPainter {
             (_, every) => format!("at {:.0} % of the size, 1 hair of {every}", 100.0 * scale),
         };
         format!("CPU: {part}, {:.0} ms{}", 1e3 * self.took, self.pace.words())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{
-        document::Document,
-        session::{Action, Session},
-        view::View,
-    };
-
-    #[test]
-    fn a_picture_of_another_size_is_not_whole() {
-        let text = "[builtin]\nstrands = 10\nguides = 5\n";
-        let document = Document::new("scene.toml".as_ref(), text.into()).unwrap();
-        let mut session = Session::new(document, 1, None, || ()).unwrap();
-        session.act(Action::Play(false)).unwrap();
-        let wait = |mut done: Box<dyn FnMut() -> bool + '_>| {
-            let tries = (0..12_000).find(|_| {
-                std::thread::sleep(Duration::from_millis(5));
-                done()
-            });
-            assert!(tries.is_some(), "it did not happen within a minute");
-        };
-        wait(Box::new(|| session.latest().is_some()));
-        let (snapshot, mut view) = (session.latest().unwrap(), View::default());
-        view.frame(&session, &snapshot, 1.0);
-        let view = view.view_parameters(&snapshot.stages[0], 1.0).unwrap();
-        let ctx = egui::Context::default();
-        let mut painter = CpuPainter::new(&ctx, None, 1);
-        for size in [[64, 48], [96, 48]] {
-            painter.request(&ctx, &snapshot, 0, &view, size);
-            assert!(!painter.is_whole(&snapshot), "{size:?}: before it is drawn");
-            wait(Box::new(|| {
-                painter.look(&ctx);
-                painter.request(&ctx, &snapshot, 0, &view, size);
-                painter.is_whole(&snapshot)
-            }));
-        }
     }
 }

@@ -3,8 +3,13 @@
 mod cpu;
 mod gpu;
 mod pane;
+#[cfg(test)]
+mod tests;
 
-use crate::snapshot::{Snapshot, ViewParameters};
+use crate::{
+    snapshot::{Snapshot, ViewParameters},
+    text::counted,
+};
 use cpu::CpuPainter;
 use eframe::{egui, wgpu::DeviceType};
 use gpu::GpuPainter;
@@ -115,15 +120,11 @@ impl Painter {
         }
     }
 
-    /// Receives a finished picture. Returns the moment of the current picture, so that overlays match it: a
-    /// picture of the CPU shows a past step.
-    pub fn moment(&mut self, ctx: &egui::Context, now: &Arc<Snapshot>) -> Arc<Snapshot> {
+    /// The moment of the current picture, so that overlays match it: a picture of the CPU shows a past frame.
+    pub fn moment<'a>(&'a self, now: &'a Arc<Snapshot>) -> &'a Arc<Snapshot> {
         match self {
-            Self::Gpu(_) => now.clone(),
-            Self::Cpu(painter) => {
-                painter.look(ctx);
-                painter.moment().filter(|m| m.scene == now.scene).unwrap_or(now).clone()
-            }
+            Self::Gpu(_) => now,
+            Self::Cpu(painter) => painter.moment().filter(|m| m.scene == now.scene).unwrap_or(now),
         }
     }
 
@@ -142,6 +143,18 @@ impl Painter {
             Self::Cpu(painter) => painter.note(),
         }
     }
+}
+
+/// Receives the finished pictures, then gets the latest snapshot by `latest`. In the other order, a snapshot that is
+/// published between the two would never be shown: its painter still counts as busy, so it does not wake the window, and
+/// the picture that the window receives was already awaited.
+pub fn receive<T>(painters: &mut [Painter], ctx: &egui::Context, latest: impl FnOnce() -> T) -> T {
+    for painter in painters {
+        if let Painter::Cpu(painter) = painter {
+            painter.receive(ctx);
+        }
+    }
+    latest()
 }
 
 /// Measures the rate of pictures of moving hair.
@@ -168,7 +181,7 @@ impl Pace {
     fn words(&self) -> String {
         match self.mean {
             0.0 => String::new(),
-            mean => format!("; {:.0} pictures a second", 1.0 / mean),
+            mean => format!("; {} a second", counted((1.0 / mean).round() as u64, "picture")),
         }
     }
 }

@@ -6,21 +6,21 @@ use eframe::egui;
 /// Keys and their functions.
 const KEYS: [(&str, &str); 16] = [
     ("Space", "play or pause"),
-    ("Right", "a step, while paused"),
+    ("Right", "the next frame, while paused"),
     ("Left", "the cached frame before, while paused"),
     ("R", "reset to time 0"),
-    ("F", "look at all hair"),
+    ("F", "frame hair and head"),
     ("C", "compare two settings on the same motion"),
     ("G", "graphs"),
     ("P", "presets"),
-    ("Tab", "hide the panels, or show them"),
+    ("Tab", "hide or show the panels"),
     ("Ctrl Z, Ctrl Shift Z", "undo, redo"),
     ("Ctrl O, Ctrl S", "open, save"),
-    ("F12", "a still of what is seen"),
-    ("Home", "the head back to where it was"),
-    ("?", "this page"),
+    ("F12", "record a still"),
+    ("Home", "return the head to its place"),
+    ("?", "this list"),
     ("Esc", "close what is open; forget the picked strand"),
-    ("drag a blue dot", "blow from elsewhere; move, turn, widen what stands in the scene"),
+    ("drag a blue dot", "set the wind; move, turn or resize an object"),
 ];
 
 /// Width of the descriptions [points].
@@ -30,20 +30,22 @@ const WIDTH: f32 = 420.0;
 pub fn show(ctx: &egui::Context, open: &mut bool) {
     let window = egui::Window::new("Keys").open(open).resizable(false).collapsible(false);
     window.anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO).show(ctx, |ui| {
-        egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
-            for (key, what) in KEYS {
-                ui.monospace(key);
-                ui.label(what);
-                ui.end_row();
-            }
-            for (_, name, key, tip) in Tool::ALL {
-                ui.monospace(key.name());
-                ui.vertical(|ui| {
-                    ui.set_width(WIDTH);
-                    ui.label(format!("{name}: {tip}"));
-                });
-                ui.end_row();
-            }
+        egui::ScrollArea::vertical().show(ui, |ui| {
+            egui::Grid::new("keys").num_columns(2).striped(true).show(ui, |ui| {
+                for (key, what) in KEYS {
+                    ui.monospace(key);
+                    ui.label(what);
+                    ui.end_row();
+                }
+                for (_, name, key, tip) in Tool::ALL {
+                    ui.monospace(key.name());
+                    ui.vertical(|ui| {
+                        ui.set_width(WIDTH);
+                        ui.label(format!("{name}: {tip}"));
+                    });
+                    ui.end_row();
+                }
+            });
         });
     });
 }

@@ -4,6 +4,7 @@
 pub mod control;
 pub mod files;
 pub mod folder;
+pub mod graphs;
 pub mod help;
 pub mod inspect;
 pub mod keys;

@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
         if ui.button(name).on_hover_text("Space").clicked() {
             actions.push(Action::Play(!playing));
         }
-        if ui.add_enabled(!playing, egui::Button::new("Step")).on_hover_text("Right arrow: a sixtieth of a second").clicked() {
+        if ui.add_enabled(!playing, egui::Button::new("Step")).on_hover_text("Right arrow: advance by one frame, 1/60 s").clicked() {
             actions.push(Action::Step);
         }
         if ui.button("Reset").on_hover_text("R: back to time 0").clicked() {
@@ -31,16 +31,18 @@ pub fn show(ui: &mut Ui, session: &Session, snapshot: Option<&Snapshot>, actions
         ui.separator();
         if let Some(snapshot) = snapshot {
             let took = snapshot.took.as_secs_f32();
-            // The time that a step may take at the current playback speed.
+            // The time that a frame may take at the current playback speed.
             let due = crate::player::STEP / session.speed();
             let share = due / took.max(1e-6);
             ui.monospace(format!("{:6.2} s", snapshot.time));
             let pace = if playing && share < 1.0 {
-                format!("step {:.1} ms: {:.0} % of the speed", 1e3 * took, 100.0 * share)
+                format!("{:.1} ms a frame: {:.0} % of the speed", 1e3 * took, 100.0 * share)
             } else {
-                format!("step {:.1} ms", 1e3 * took)
+                format!("{:.1} ms a frame", 1e3 * took)
             };
-            ui.weak(pace).on_hover_text("Compute time of a step of 1/60 s. If it exceeds 1/60 s, playback slows down; no step is skipped.");
+            // Text that does not fit goes to the next line as a whole.
+            ui.style_mut().wrap_mode = Some(egui::TextWrapMode::Extend);
+            ui.weak(pace).on_hover_text("Compute time of a frame of 1/60 s. If it exceeds 1/60 s, playback slows down; no frame is skipped.");
             ui.weak(super::timeline::cache_note(&snapshot.cached));
         }
     });
@@ -69,9 +71,9 @@ pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<
         }
         ui.separator();
         let shown = session.shown();
-        let name = shown.map_or("Natural", Value::name);
+        let name = shown.map_or("natural", Value::name);
         egui::ComboBox::from_label("Color").selected_text(name).show_ui(ui, |ui| {
-            if ui.selectable_label(shown.is_none(), "Natural").clicked() {
+            if ui.selectable_label(shown.is_none(), "natural").clicked() {
                 actions.push(Action::Show(None));
             }
             for value in Value::ALL {
@@ -88,9 +90,9 @@ pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<
                 (&mut o.colliders, "Colliders"),
                 (&mut o.slice, "Slice of distance"),
                 (&mut o.volume, "Volume grid"),
-                (&mut o.frames, "Frames of head, roots and the picked strand"),
+                (&mut o.frames, "Coordinate frames of head, roots and the picked strand"),
                 (&mut o.roots, "Roots"),
-                (&mut o.handles, "Handles of wind and what stands in the scene"),
+                (&mut o.handles, "Handles of wind, colliders and hands"),
             ] {
                 ui.checkbox(on, name);
             }

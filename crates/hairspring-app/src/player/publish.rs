@@ -5,7 +5,7 @@ use crate::{
     drag_limiter::Pushing,
     snapshot::{Snapshot, StageSnapshot, Still},
 };
-use hairspring_scene::stage::{FrameReport, Stage};
+use hairspring_scene::stage::Stage;
 use std::{
     sync::{Arc, atomic::Ordering::Relaxed},
     time::{Duration, Instant},
@@ -18,11 +18,8 @@ impl Work {
     /// Updates the follow hairs of all stages.
     pub(super) fn show(&mut self) {
         if std::mem::take(&mut self.unshown) {
-            for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
-                let took = stage.update_render_points();
-                if k == 0 {
-                    self.report.follow = took;
-                }
+            for ((stage, _), report) in self.stages.iter_mut().zip(&mut self.reports) {
+                report.follow = stage.update_render_points();
             }
         }
     }
@@ -48,11 +45,13 @@ impl Work {
         if snapshot.scene != self.scene || snapshot.stages.len() != self.stages.len() {
             snapshot.stages = self.stages.iter().map(fresh).collect();
         }
-        for ((stage_snapshot, (stage, still)), measure) in
-            snapshot.stages.iter_mut().zip(&self.stages).zip(&self.measures)
+        let figures = self.measures.iter().zip(&self.reports);
+        for ((stage_snapshot, (stage, still)), (measure, report)) in
+            snapshot.stages.iter_mut().zip(&self.stages).zip(figures)
         {
             stage_snapshot.fill(stage, still, self.show);
             (stage_snapshot.measure, stage_snapshot.energy) = *measure;
+            stage_snapshot.report = *report;
             stage_snapshot.pushed = self.pushing.as_ref().map(Pushing::shown);
         }
         let picked = self.picked;
@@ -62,8 +61,7 @@ impl Work {
         self.frames.list(&mut snapshot.cached);
         self.published += 1;
         snapshot.number = self.published;
-        (snapshot.report, snapshot.took, snapshot.reset_strands) =
-            (self.report, self.took, self.reset_strands);
+        (snapshot.took, snapshot.reset_strands) = (self.took, self.reset_strands);
         self.shown = Instant::now();
         self.shared.seen.store(false, Relaxed);
         if let Some(old) = lock(&self.shared.latest).replace(next) {
@@ -86,7 +84,6 @@ impl Work {
                 frame: 0,
                 cached: CachedFrames::default(),
                 stages: Vec::new(),
-                report: FrameReport::default(),
                 took: Duration::ZERO,
                 reset_strands: 0,
                 picked: None,

@@ -55,7 +55,8 @@ pub(super) struct Work {
     pub(super) step: u64,
     pub(super) published: u64,
     pub(super) reset_strands: usize,
-    pub(super) report: FrameReport,
+    /// The last report of each stage.
+    pub(super) reports: Vec<FrameReport>,
     /// The last measurements of each stage, and their scene and step.
     pub(super) measures: Vec<(Measure, Energy)>,
     pub(super) measured: (u64, u64),
@@ -96,7 +97,7 @@ impl Work {
             step: 0,
             published: 0,
             reset_strands: 0,
-            report: FrameReport::default(),
+            reports: Vec::new(),
             measures: Vec::new(),
             measured: (0, 0),
             unshown: false,
@@ -166,6 +167,7 @@ impl Work {
                 match stages {
                     Ok(stages) => {
                         self.stages = stages;
+                        self.reports = vec![FrameReport::default(); self.stages.len()];
                         self.pool.clear();
                         self.tidy = Some(Instant::now() + LEFT);
                         (self.step, self.reset_strands) = (0, 0);
@@ -195,7 +197,8 @@ impl Work {
             Order::Play(playing) => {
                 self.playing = playing;
                 self.due = Instant::now();
-                return false;
+                // The last frames may not have been published.
+                return !playing && self.unshown;
             }
             Order::Step(rate) => {
                 let began = Instant::now();
@@ -350,12 +353,10 @@ impl Work {
             // From time 0 on, the scene plays by itself again.
             self.touched = touches || frame > 0;
         }
-        for (k, (stage, _)) in self.stages.iter_mut().enumerate() {
+        for ((stage, _), last) in self.stages.iter_mut().zip(&mut self.reports) {
             let report = stage.advance_frame(rate);
             self.reset_strands += report.step.reset_strands;
-            if k == 0 {
-                self.report = FrameReport { follow: self.report.follow, ..report };
-            }
+            *last = FrameReport { follow: last.follow, ..report };
         }
         self.unshown = true;
         self.step += 1;
@@ -373,4 +374,25 @@ fn open(scene: Scene, card: Option<&Gpu>) -> Result<(Stage, Arc<Still>), AppErro
     stage.set_external_interpolation(card.is_none_or(|card| card.can_place_among(stage.colliders())));
     let still = Arc::new(Still::new(&stage));
     Ok((stage, still))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hairspring_scene::{
+        Guides,
+        builtin::{self, BuiltinOptions},
+    };
+
+    #[test]
+    fn a_pause_shows_the_last_frame() {
+        let options = BuiltinOptions { strands: 10, guides: Guides::Count(5), ..BuiltinOptions::default() };
+        let mut work = Work::new();
+        work.execute(Order::Open(Box::new(builtin::scene(&options)), None));
+        work.publish();
+        work.advance(RATE);
+        assert!(work.execute(Order::Play(false)), "the last frame was not published");
+        work.publish();
+        assert!(!work.execute(Order::Play(false)), "there is nothing new to show");
+    }
 }

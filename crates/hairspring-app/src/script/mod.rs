@@ -15,11 +15,11 @@ use std::{collections::VecDeque, path::PathBuf};
 /// A line of a script.
 #[derive(Clone, Debug)]
 pub enum Line {
-    /// Waits for this number of steps.
+    /// Waits for this number of frames.
     Wait(u64),
     /// Plays or pauses.
     Play(bool),
-    /// Advances by one step.
+    /// Advances by one frame.
     Step,
     /// Returns to time 0.
     Reset,

@@ -40,14 +40,14 @@ const fn verb(
 pub const VERBS: &[Verb] = &[
     verb(
         "wait",
-        "STEPS",
+        "FRAMES",
         "30",
-        "waits for this number of steps of 1/60 s; while paused, it takes them",
-        |r| Ok(Line::Wait(r.count("a number of steps", 0)?.into())),
+        "waits for this number of frames of 1/60 s; while paused, it advances by them",
+        |r| Ok(Line::Wait(r.count("a number of frames", 0)?.into())),
     ),
     verb("play", "", "", "plays", |_| Ok(Line::Play(true))),
     verb("pause", "", "", "pauses", |_| Ok(Line::Play(false))),
-    verb("step", "", "", "takes one step", |_| Ok(Line::Step)),
+    verb("step", "", "", "advances by one frame", |_| Ok(Line::Step)),
     verb("reset", "", "", "returns to time 0", |_| Ok(Line::Reset)),
     verb(
         "seek",
@@ -94,8 +94,8 @@ pub const VERBS: &[Verb] = &[
         "removes a value that the scene file has, so that its default applies",
         |r| Ok(Line::Set(r.text.parse()?, None)),
     ),
-    verb("undo", "", "", "undoes one step", |_| Ok(Line::Undo)),
-    verb("redo", "", "", "redoes one step", |_| Ok(Line::Redo)),
+    verb("undo", "", "", "undoes one change", |_| Ok(Line::Undo)),
+    verb("redo", "", "", "redoes one change", |_| Ok(Line::Redo)),
     verb("new", "STYLE", "curly", "opens the built-in head in a style", |r| Ok(Line::New(r.text.to_owned()))),
     verb("open", "FILE", "shot.toml", "opens a file as *File > Open* does, without asking to save", |r| {
         Ok(Line::Open(r.path()?))
@@ -203,9 +203,13 @@ pub const VERBS: &[Verb] = &[
         "writes a picture of the window; if paused, once the hair is drawn in full quality",
         |r| Ok(Line::Shot(r.picture()?)),
     ),
-    verb("pace", "", "", "prints the renderer, the pictures per second, and the time of a step", |_| {
-        Ok(Line::Pace)
-    }),
+    verb(
+        "pace",
+        "",
+        "",
+        "prints the renderer, the pictures per second, and the compute time of a frame",
+        |_| Ok(Line::Pace),
+    ),
     verb("quit", "", "", "closes the window without asking to save", |_| Ok(Line::Quit)),
 ];
 

@@ -1,18 +1,18 @@
 //! Finds the range of the color ramp from the visible values.
 
 use super::View;
-use crate::snapshot::StageSnapshot;
 
 impl View {
-    /// Updates the range of the color ramp: from 0 to the value that a fiftieth of the nonzero points exceed,
-    /// smoothed over time.
-    pub fn follow_range(&mut self, stage: &StageSnapshot, guides: bool) {
-        if guides || stage.values.is_empty() {
+    /// Updates the range of the color ramp: from 0 to the value that a fiftieth of the nonzero points exceed.
+    /// While the scene plays, it is smoothed over time. A range that still changed in a paused scene would change its
+    /// picture again and again.
+    pub fn follow_range(&mut self, values: &[Vec<f32>], guides: bool, playing: bool) {
+        if guides || values.is_empty() {
             self.range = [0.0, 1.0];
             return;
         }
         // Only nonzero values count, because some values, such as contact, are 0 at most points.
-        let mut some: Vec<f32> = scattered(&stage.values).filter(|v| v.is_finite() && *v > 0.0).collect();
+        let mut some: Vec<f32> = scattered(values).filter(|v| v.is_finite() && *v > 0.0).collect();
         if some.is_empty() {
             return;
         }
@@ -21,7 +21,8 @@ impl View {
         let high = high.max(1e-12);
         // A range of a very different magnitude, from another value, is replaced immediately.
         let far = self.range[1] > 20.0 * high || self.range[1] < 0.05 * high;
-        self.range = [0.0, if far { high } else { self.range[1] + 0.1 * (high - self.range[1]) }];
+        let smoothed = self.range[1] + 0.1 * (high - self.range[1]);
+        self.range = [0.0, if playing && !far { smoothed } else { high }];
     }
 }
 
@@ -38,6 +39,18 @@ fn scattered(values: &[Vec<f32>]) -> impl Iterator<Item = f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_range_of_a_paused_scene_does_not_change_from_picture_to_picture() {
+        let mut view = View { range: [0.0, 3.0], ..View::default() };
+        let values = [vec![1.0; 50]];
+        view.follow_range(&values, false, true);
+        assert!(view.range[1] > 1.0 && view.range[1] < 3.0, "{:?}", view.range);
+        for _ in 0..2 {
+            view.follow_range(&values, false, false);
+            assert_eq!(view.range, [0.0, 1.0]);
+        }
+    }
 
     #[test]
     fn values_are_sampled_evenly_along_strands_of_any_point_count() {

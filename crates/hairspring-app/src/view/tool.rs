@@ -37,7 +37,7 @@ impl Tool {
             Self::Look,
             "Look",
             egui::Key::Num1,
-            "Drag to turn; with Shift or the middle button to move; wheel to come nearer. The right button turns with every tool.",
+            "Drag to turn the view; with Shift or the middle button, to move it. The wheel zooms. The right button turns the view with every tool.",
         ),
         (
             Self::Grab,
@@ -49,21 +49,21 @@ impl Tool {
             Self::Ball,
             "Ball",
             egui::Key::Num3,
-            "Drag to push a ball through the hair; it is as large as its slider says.",
+            "Drag to push a ball through the hair. The slider sets its radius.",
         ),
-        (Self::Head, "Head", egui::Key::Num4, "Drag the head; it comes back when it is let go of."),
-        (Self::Pick, "Pick", egui::Key::Num5, "Press on a strand to see its numbers."),
+        (Self::Head, "Head", egui::Key::Num4, "Drag the head. It returns when you release it."),
+        (Self::Pick, "Pick", egui::Key::Num5, "Press on a strand to show its values."),
         (
             Self::Comb,
             "Comb",
             egui::Key::Num6,
-            "Drag spread fingers through the hair: it goes with them across itself, and slides through along itself.",
+            "Drag spread fingers through the hair. They carry strands sideways, and slide along them.",
         ),
         (
             Self::Palm,
             "Hand",
             egui::Key::Num7,
-            "Drag to stroke the hair with an open hand: its palm is turned to the head, its fingers across the stroke.",
+            "Drag to stroke the hair with an open hand. The palm faces the head, and the fingers point across the stroke.",
         ),
     ];
 }
