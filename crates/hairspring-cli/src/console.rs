@@ -6,7 +6,10 @@ use serde_json::{Value, json};
 use std::{
     fmt::Display,
     io::{self, IsTerminal, Write, stderr, stdout},
-    sync::{Mutex, PoisonError},
+    sync::{
+        Mutex, PoisonError,
+        atomic::{AtomicBool, Ordering},
+    },
 };
 
 /// How much is printed.
@@ -19,6 +22,27 @@ pub struct Console {
 
 /// The first error of standard output.
 static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
+
+/// Whether standard output was closed when the program began.
+static CLOSED: AtomicBool = AtomicBool::new(false);
+
+/// Remembers whether standard output is closed. The standard library opens `/dev/null` in its place when the program begins,
+/// and takes writing to a closed one for a success, so what is printed would be lost without an error.
+pub extern "C" fn remember_closed_output() {
+    #[cfg(unix)]
+    // SAFETY: reads the flags of a file descriptor, which may be closed.
+    if unsafe { libc::fcntl(libc::STDOUT_FILENO, libc::F_GETFD) } == -1 {
+        CLOSED.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Returns an error if standard output was closed.
+pub fn check_open() -> io::Result<()> {
+    match CLOSED.load(Ordering::Relaxed) {
+        true => Err(io::Error::other("it is closed")),
+        false => Ok(()),
+    }
+}
 
 /// The text on one line: a name or a path in it must neither control the terminal nor begin a line that a program
 /// takes for one of ours.
@@ -55,7 +79,7 @@ pub fn print_json(value: &Value) {
 fn print(line: &str) {
     let mut unprinted = UNPRINTED.lock().unwrap_or_else(PoisonError::into_inner);
     if unprinted.is_none() {
-        *unprinted = writeln!(stdout(), "{line}").err();
+        *unprinted = check_open().and_then(|()| writeln!(stdout(), "{line}")).err();
     }
 }
 
@@ -111,14 +135,27 @@ impl Console {
 
     /// Prints what the program is doing, if it takes a moment.
     pub fn doing(self, line: impl Display) {
-        if !self.quiet {
-            let _ = writeln!(stderr(), "{}", one_line(&line));
+        match self.form {
+            ProgressForm::Json => self.note(line),
+            _ if self.quiet => {}
+            _ => _ = writeln!(stderr(), "{}", one_line(&line)),
         }
     }
 
     /// Shows the progress of `total` frames of `what`: a bar on a terminal, otherwise a line every tenth.
     pub fn progress(self, what: &'static str, total: u32) -> Progress {
         self.progress_in(what, total, "frames")
+    }
+
+    /// Shows the progress of `total` frames before the run. For Open Job Description it is a status without a number, because
+    /// the number is that of the run.
+    pub fn preroll(self, total: u32) -> Progress {
+        if self.form == ProgressForm::Text {
+            self.doing(format_args!("pre-roll of {total} frames"));
+        }
+        let mut progress = self.progress("pre-roll", total);
+        progress.is_of_run = false;
+        progress
     }
 
     /// Like [`Console::progress`], in units other than frames.
@@ -135,7 +172,7 @@ impl Console {
             bar.set_message(what);
             bar
         });
-        Progress { bar, console: self, what, unit, total, done: 0 }
+        Progress { bar, console: self, what, unit, total, done: 0, is_of_run: true }
     }
 }
 
@@ -147,6 +184,8 @@ pub struct Progress {
     unit: &'static str,
     total: u32,
     done: u32,
+    /// Whether it is the progress of the run, and not of what comes before it.
+    is_of_run: bool,
 }
 
 impl Progress {
@@ -160,10 +199,12 @@ impl Progress {
             })),
             (_, ProgressForm::Openjd) => {
                 // The result is on standard output too; a closed pipe is reported at the end.
-                print_line(format_args!(
-                    "openjd_progress: {:.2}",
-                    100.0 * f64::from(done) / f64::from(total.max(1))
-                ));
+                if self.is_of_run {
+                    print_line(format_args!(
+                        "openjd_progress: {:.2}",
+                        100.0 * f64::from(done) / f64::from(total.max(1))
+                    ));
+                }
                 print_line(format_args!("openjd_status: {what}, {done} of {total} {unit}"));
             }
             (Some(bar), _) => bar.inc(1),

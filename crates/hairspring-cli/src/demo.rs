@@ -83,10 +83,9 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     output::try_folder(&still)?;
     let frames = ((f64::from(options.seconds) * options.fps.hertz()).round().min(1e6) as u32).max(1);
     let moment = ((STILL * options.fps.hertz()).round() as u32 + 1).min(frames);
-    let sinks = vec![
-        Sink::Clip(clip(&film, options.view.size, options.fps.hertz())?),
-        Sink::Still(still.clone(), moment),
-    ];
+    let clip = clip(&film, options.view.size, options.fps.hertz(), console)?;
+    let (width, height) = clip.size();
+    let sinks = vec![Sink::Clip(clip), Sink::Still(still.clone(), moment)];
     console.doing(format_args!("growing {} hairs", crate::totals::grouped(options.strands as usize)));
     let scene = scene(&BuiltinOptions {
         strands: options.strands,
@@ -101,7 +100,6 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         let text = format!("stopped after frame {after} of {frames}; the clip was not written");
         return Err(Fault::Interrupted(text));
     }
-    let (width, height) = options.view.size;
     if options.json {
         let summary = json!({
             "clip": film,

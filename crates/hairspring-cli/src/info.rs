@@ -16,7 +16,7 @@ use hairspring_io::{
     ErrorKind, Format, Motion, ReadOptions, SkinDistance, bytes_of, pc2, read_body, read_bones, read_groom,
     read_motion, read_scene,
 };
-use hairspring_scene::{Guides, Scene};
+use hairspring_scene::{Guides, Scene, VertexCache};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -29,7 +29,8 @@ use std::path::{Path, PathBuf};
 /// `joint_positions_m` are the joints of a body at rest, or of a motion in its first frame, and
 /// `part_bounds_m` two corners of the box around each part, in the order of `joints` and `parts`. For the
 /// grooms of a scene with a body, `root_distance_m` is the median and the largest distance of a root from the
-/// skin. `simulated` is the number of strands of a groom that are simulated.
+/// skin. `simulated` is the number of strands of a groom that are simulated. A point cache has no unit, so
+/// `bounds_file_units` is the box around all its samples as it is.
 #[derive(Parser)]
 #[command(after_help = "\
 Examples:
@@ -84,6 +85,14 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     if options.units.reverse && !Format::GROOMS.contains(&format) {
         return Err(Fault::Usage("--reverse applies to a groom file (.hair, .tfx, .data)".into()));
     }
+    let has_unit = options.units.scale.is_some() || options.units.up.is_some();
+    if has_unit && matches!(format, Format::Pc2 | Format::TfxBone) {
+        let text = format!(
+            "--scale and --up do not apply to a .{} file, which is described in its own unit",
+            format.name()
+        );
+        return Err(Fault::Usage(text));
+    }
     let mut found = match format {
         Format::Hair | Format::Tfx | Format::Usc | Format::Csv | Format::Ply => {
             let mut loaded = read_groom(path, &units).map_err(wrong)?;
@@ -97,11 +106,16 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         Format::Pc2 => {
             let data = bytes_of(path).map_err(wrong)?;
             let cache = pc2::parse(&data).map_err(|p| wrong(p.in_file(path)))?;
+            let mut positions = cache.samples.iter().flatten();
+            let first = positions.next().map(|first| (*first, *first));
+            let box_of_all =
+                first.map(|first| positions.fold(first, |(low, high), p| (low.min(*p), high.max(*p))));
             json!({
                 "samples": cache.samples.len(),
                 "points": cache.samples.first().map_or(0, Vec::len),
                 "first_frame": cache.first_frame,
                 "frames_per_sample": cache.frames_per_sample,
+                "bounds_file_units": bounds(box_of_all),
             })
         }
         Format::Gltf | Format::Obj | Format::TfxMesh => match read_body(path, &units) {
@@ -214,6 +228,10 @@ fn clip(clip: &Clip) -> Value {
     })
 }
 
+fn vertex_motion(cache: &VertexCache) -> Value {
+    json!({ "frames": cache.frames.len(), "rate_hz": cache.rate, "seconds": cache.duration() })
+}
+
 fn scene(scene: &Scene, repairs: &Repairs) -> Value {
     let grooms: Vec<Value> = scene
         .grooms
@@ -239,7 +257,7 @@ fn scene(scene: &Scene, repairs: &Repairs) -> Value {
         "repaired": repairs.total(),
         "grooms": grooms,
         "body": scene.body.as_ref().map(body),
-        "motion": scene.clip.as_ref().map(clip),
+        "motion": scene.clip.as_ref().map(clip).or_else(|| scene.vertex_cache.as_ref().map(vertex_motion)),
         "colliders": scene.colliders.len() + scene.sheets.len() + usize::from(scene.collision.is_some()),
         "substeps": scene.solver.substeps,
     })

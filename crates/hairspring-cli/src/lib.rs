@@ -30,6 +30,7 @@ use clap::{
     error::{ContextKind, ContextValue},
 };
 use console::Console;
+pub use console::remember_closed_output;
 use fault::Fault;
 use std::{ffi::OsString, io::Write, path::Path};
 
@@ -40,6 +41,7 @@ const WEDGE: &str = "`hairspring wedge` comes with the Python package: run `pip 
 /// Runs the program with its arguments, of which the first is its name. Returns the exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     fault::report_panics();
+    console::remember_closed_output();
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let outcome = std::panic::catch_unwind(|| {
         let cli = match Cli::try_parse_from(&arguments) {
@@ -79,6 +81,7 @@ fn explain(refused: &clap::Error) -> Result<u8, Fault> {
     if refused.use_stderr() {
         return Ok(Fault::Usage(String::new()).code());
     }
+    let printed = console::check_open().and(printed);
     printed.map_err(console::unprinted)?;
     Ok(0)
 }

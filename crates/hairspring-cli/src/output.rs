@@ -20,7 +20,7 @@ pub fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
-/// Checks that files can be written to the folder of `path`, and that `path` is not a folder itself.
+/// Checks that files can be written to the folder of `path`, and that `path` is a regular file if it exists.
 pub fn try_folder(path: &Path) -> Result<(), Fault> {
     let folder = path.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
@@ -32,6 +32,11 @@ pub fn try_folder(path: &Path) -> Result<(), Fault> {
     }
     if path.is_dir() {
         let text = format!("{} is a folder; name a file in it", path.display());
+        return Err(Fault::Unwritable(text));
+    }
+    // A pipe would be replaced by a file, and whoever reads from it would wait for ever.
+    if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+        let text = format!("{} is a pipe, a socket or a device; name a file", path.display());
         return Err(Fault::Unwritable(text));
     }
     // Creates an unnamed file if the system supports it, otherwise one that is removed immediately.

@@ -14,7 +14,7 @@ use std::{borrow::Cow, time::Instant};
 /// Size, camera and renderer of pictures.
 #[derive(Args, Default)]
 pub struct View {
-    /// Width and height of the picture [pixels]
+    /// Width and height of the picture [pixels], each 1 to 16384; of a clip, 16x16 to 3840x2160, and even
     #[arg(long, value_name = "WxH", default_value = "1280x720", value_parser = frames::size)]
     pub size: (u32, u32),
 

@@ -1,7 +1,26 @@
-//! Plays the frames of a scene until the last one, or until the user stops the run.
+//! Sets a scene up, and plays its frames until the last one, or until the user stops the run.
 
-use crate::{fault::Fault, interrupt};
-use hairspring_scene::stage::{FrameRate, FrameReport, Stage};
+use crate::{console::Console, fault::Fault, interrupt};
+use hairspring_scene::{
+    Scene,
+    stage::{FrameRate, FrameReport, Stage},
+};
+
+/// Sets a scene up. Shows the progress of the pre-roll, which may take longer than the scene, and prints the notes about
+/// the scene.
+pub fn set_up(scene: Scene, console: Console) -> Result<Stage, Fault> {
+    let mut shown = None;
+    let stage = Stage::with_preroll_progress(scene, &mut |done, all| {
+        let progress = shown.get_or_insert_with(|| console.preroll(all as u32));
+        if done > 0 {
+            progress.step(|| format!("frame {done} of the pre-roll"));
+        }
+    });
+    drop(shown);
+    let stage = stage?;
+    console.note_all(stage.notes());
+    Ok(stage)
+}
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

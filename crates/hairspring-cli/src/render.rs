@@ -8,7 +8,7 @@ use crate::{
     input::Input,
     interrupt, output,
     picture::{Setup, Studio, View},
-    play::{Ending, play},
+    play::{Ending, play, set_up},
     totals::{self, Totals},
 };
 use clap::Parser;
@@ -102,8 +102,13 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let mut wanted: Vec<u32> = range.numbers().collect();
     let outputs = wanted.iter().map(|number| output::frame_path(&options.output, *number));
     output::keep_inputs(&files, &options.input.path, outputs)?;
+    let mut size = options.view.size;
     let sink = match kind {
-        Kind::Clip => Sink::Clip(clip(&options.output, options.view.size, options.fps.hertz())?),
+        Kind::Clip => {
+            let clip = clip(&options.output, size, options.fps.hertz(), console)?;
+            size = clip.size();
+            Sink::Clip(clip)
+        }
         Kind::Pictures => {
             let origin = Origin::new("render", &all_options(options, range), files);
             let file = |number| output::frame_path(&options.output, number);
@@ -135,7 +140,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
             "frames": wanted.len(),
             "skipped": range.count() as usize - wanted.len(),
             "fps": options.fps.hertz(),
-            "size": [options.view.size.0, options.view.size.1],
+            "size": [size.0, size.1],
         });
         print_json(&totals.json(&stage, summary));
     } else {
@@ -164,8 +169,7 @@ pub fn shoot(
     sinks: Vec<Sink>,
     console: Console,
 ) -> Result<(Stage, Totals, Ending), Fault> {
-    let mut stage = Stage::new(scene)?;
-    console.note_all(stage.notes());
+    let mut stage = set_up(scene, console)?;
     let setup = Setup { turned: turn.is_some(), format: Sink::format(&sinks) };
     let mut studio = Studio::new(view, &mut stage, setup)?;
     if studio.lacks_alpha() {
@@ -219,11 +223,23 @@ pub fn shoot(
 }
 
 /// Starts a clip. A size or rate that clips do not support is an error of the command line.
-pub fn clip(path: &Path, (width, height): (u32, u32), fps: f64) -> Result<Box<ClipWriter>, Fault> {
-    ClipWriter::create(path, width, height, fps).map(Box::new).map_err(|e| match e {
+pub fn clip(
+    path: &Path,
+    (width, height): (u32, u32),
+    fps: f64,
+    console: Console,
+) -> Result<Box<ClipWriter>, Fault> {
+    let clip = ClipWriter::create(path, width, height, fps).map_err(|e| match e {
         OutputError::Clip { .. } => Fault::Usage(e.to_string()),
         other => other.into(),
-    })
+    })?;
+    let (even_width, even_height) = clip.size();
+    if (even_width, even_height) != (width, height) {
+        console.note(format_args!(
+            "a clip has an even width and height, so that of {width}x{height} pixels has {even_width}x{even_height}; set --size to choose another"
+        ));
+    }
+    Ok(Box::new(clip))
 }
 
 /// The kind of output that a file name selects.

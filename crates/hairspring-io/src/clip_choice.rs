@@ -1,6 +1,6 @@
 //! The choice of one of the motions of a file.
 
-use crate::load::list;
+use crate::{Character, load::list};
 use hairspring::body::Clip;
 
 /// Names of motions that a note lists.
@@ -44,6 +44,19 @@ pub(crate) fn unplayed_note(motions: &[&str], end: &str) -> Option<String> {
         format!("the file has {count} {word} ({names}), which {are} not played{end}")
     })
 }
+
+impl Character {
+    /// Returns a note that its motions are not played; `None` if it has none. `end` completes the sentence, such as with the
+    /// remedy.
+    pub fn unplayed_note(&self, end: &str) -> Option<String> {
+        let mut motions = clip_names(&self.clips);
+        motions.extend(self.vertex_cache.as_ref().map(|_| OF_VERTICES));
+        unplayed_note(&motions, end)
+    }
+}
+
+/// What notes call the motion of vertices, which has no name.
+pub(crate) const OF_VERTICES: &str = "that of its vertices";
 
 /// The names of clips.
 pub(crate) fn clip_names(clips: &[Clip]) -> Vec<&str> {

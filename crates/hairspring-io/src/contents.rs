@@ -16,9 +16,16 @@ pub(crate) fn check(path: &Path, data: &[u8]) -> Result<(), Problem> {
     // Some formats are archives themselves.
     let packed = packed(data).filter(|_| name != "usdz").map(str::to_owned);
     let other = || format.and_then(|format| other_format(data, format));
-    let garbled =
-        || format.filter(|format| is_text(*format)).and_then(|_| unreadable_text(data)).map(str::to_owned);
-    match packed.or_else(other).or_else(garbled) {
+    let garbled = || match format? {
+        format if is_text(format) => unreadable_text(data),
+        // Other files of these formats are binary.
+        Format::Gltf | Format::Ply | Format::Tfx if has_utf16_mark(data) => {
+            Some("its text is in UTF-16; save it as UTF-8")
+        }
+        Format::Gltf | Format::Ply | Format::Tfx => wide_text(data),
+        _ => None,
+    };
+    match packed.or_else(other).or_else(|| garbled().map(str::to_owned)) {
         Some(text) => Err(Problem::whole(printable(&text))),
         None => Ok(()),
     }
@@ -92,29 +99,44 @@ fn is_text(format: Format) -> bool {
     matches!(format, Format::Obj | Format::Bvh | Format::Csv | Format::TfxMesh | Format::Scene)
 }
 
-/// Describes the content of a text file that is no text, or in an encoding that is not read.
-fn unreadable_text(data: &[u8]) -> Option<&'static str> {
+/// Whether data begins with the byte order mark of UTF-16.
+fn has_utf16_mark(data: &[u8]) -> bool {
+    [&b"\xff\xfe"[..], b"\xfe\xff"].iter().any(|mark| data.starts_with(mark)) && !has_utf32_mark(data)
+}
+
+/// Whether data begins with the byte order mark of UTF-32.
+fn has_utf32_mark(data: &[u8]) -> bool {
+    [&b"\xff\xfe\0\0"[..], b"\0\0\xfe\xff"].iter().any(|mark| data.starts_with(mark))
+}
+
+/// Describes text of two or four bytes a letter, except UTF-16 with a byte order mark.
+fn wide_text(data: &[u8]) -> Option<&'static str> {
     let head = &data[..data.len().min(HEAD)];
-    let utf16 = [&b"\xff\xfe"[..], b"\xfe\xff"].iter().any(|mark| head.starts_with(mark));
-    let utf32 = [&b"\xff\xfe\0\0"[..], b"\0\0\xfe\xff"].iter().any(|mark| head.starts_with(mark));
-    if utf16 && !utf32 {
-        return None;
-    }
     // Western letters have one byte that is not 0 in each unit of two or four.
     let letters = |unit: usize| {
         let units = head.chunks_exact(unit);
         let western = |bytes: &&[u8]| bytes.iter().filter(|byte| **byte != 0).count() == 1;
         units.len() > 3 && units.clone().filter(western).count() * 10 >= units.len() * 9
     };
-    if utf32 || letters(4) {
+    if has_utf32_mark(data) || letters(4) {
         return Some("its text is in UTF-32; save it as UTF-8");
     }
-    if letters(2) {
-        return Some("its text is in UTF-16 without a byte order mark; save it as UTF-8");
+    letters(2).then_some("its text is in UTF-16 without a byte order mark; save it as UTF-8")
+}
+
+/// Describes the content of a text file that is no text, or in an encoding that is not read.
+fn unreadable_text(data: &[u8]) -> Option<&'static str> {
+    if has_utf16_mark(data) {
+        return None;
     }
-    let control = head.iter().filter(|byte| **byte < 9 || (14..32).contains(*byte)).count();
-    (control >= 8 && control * 20 > head.len())
-        .then_some("it is a binary file, but this format is text; export it again, or correct its extension")
+    let head = &data[..data.len().min(HEAD)];
+    let binary = || {
+        let control = head.iter().filter(|byte| **byte < 9 || (14..32).contains(*byte)).count();
+        (control >= 8 && control * 20 > head.len()).then_some(
+            "it is a binary file, but this format is text; export it again, or correct its extension",
+        )
+    };
+    wide_text(data).or_else(binary)
 }
 
 #[cfg(test)]
@@ -133,7 +155,8 @@ mod tests {
         let utf32: Vec<u8> = "v 0 0 0\nv 1 0 0\n".bytes().flat_map(|byte| [0, 0, 0, byte]).collect();
         let noise: Vec<u8> = (0..2000u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
         let page = b"\n<!DOCTYPE HTML><title>404</title>";
-        let cases: [(&[&str], &[u8], &str); 12] = [
+        let marked = |name: &[u8]| [b"\xff\xfe", name].concat();
+        let cases: [(&[&str], &[u8], &str); 15] = [
             (&["a.hair", "a.obj", "a.glb", "a.tfx", "a.toml", "a.csv", "a.png"], lfs, "`git lfs pull`"),
             (
                 &["a.hair", "a.obj", "a.glb", "a.bvh", "a.toml", "a.jpg"],
@@ -147,6 +170,9 @@ mod tests {
             (&["a.obj", "a.bvh"], b"glTF\x02\0\0\0", "a .glb file; correct its extension"),
             (&["a.obj", "a.glb"], b"solid ball\nfacet normal 0 0 1\n", "STL"),
             (&["a.obj", "a.bvh", "a.csv", "a.toml", "a.tfxmesh"], &utf16, "UTF-16 without a byte order mark"),
+            (&["a.gltf", "a.ply", "a.tfx"], &utf16, "UTF-16 without a byte order mark"),
+            (&["a.gltf", "a.ply", "a.tfx"], &marked(&utf16), "its text is in UTF-16; save it as UTF-8"),
+            (&["a.gltf", "a.ply", "a.tfx"], &utf32, "UTF-32; save it as UTF-8"),
             (&["a.obj", "a.toml"], &utf32, "UTF-32; save it as UTF-8"),
             (&["a.obj"], &[&b"\xff\xfe\0\0"[..], &[65, 0, 0, 0]].concat(), "UTF-32"),
             (&["a.obj", "a.bvh", "a.toml"], &noise, "binary file"),

@@ -24,16 +24,21 @@ pub(crate) struct Strays {
 
 impl Strays {
     pub(crate) fn of(groom: &Groom) -> Self {
-        let at_origin = at_origin(groom);
-        let counts = |p: &Vec3| p.is_finite() && (at_origin == 0 || *p != Vec3::ZERO);
-        let is_near = nearness(groom.points.iter().copied().filter(counts));
-        let elsewhere = groom.points.iter().filter(|p| counts(p) && !is_near(**p)).count();
-        let all = elsewhere * FEWEST > groom.points.len();
-        let kept = || groom.points.iter().copied().filter(|p| counts(p) && (all || is_near(*p)));
+        let strands = measured_strands(groom);
+        let points = || strands.iter().flat_map(|s| groom.strand(*s)).copied().filter(|p| p.is_finite());
+        let count = points().count();
+        let without_origin = origin_is_apart(&points);
+        let counts = |p: &Vec3| !without_origin || *p != Vec3::ZERO;
+        let is_near = nearness(points().filter(counts));
+        let all = points().filter(|p| counts(p) && !is_near(*p)).count() * FEWEST > count;
+        let kept = || points().filter(|p| counts(p) && (all || is_near(*p)));
+        let (lo, hi) = bounds(kept());
+        let is_far = |p: &&Vec3| p.is_finite() && lo.is_finite() && is_apart(**p, lo, hi);
+        let at_origin = groom.points.iter().filter(|p| is_far(p) && **p == Vec3::ZERO).count();
         Self {
             at_origin,
-            elsewhere: if all { 0 } else { elsewhere },
-            extent: inner_extent(&kept, groom.points.len()),
+            elsewhere: groom.points.iter().filter(is_far).count() - at_origin,
+            extent: inner_extent(&kept, count),
         }
     }
 
@@ -86,18 +91,42 @@ fn nearness(points: impl Iterator<Item = Vec3> + Clone) -> impl Fn(Vec3) -> bool
     move |p| limit == 0.0 || distance(p) <= limit
 }
 
-/// Number of points exactly at the origin that are no part of the hair: at most a tenth of all, and farther
-/// from the box of the others than its longest side.
-fn at_origin(groom: &Groom) -> usize {
-    let at_origin = groom.points.iter().filter(|p| **p == Vec3::ZERO).count();
-    if at_origin == 0 || at_origin * 10 > groom.points.len() {
-        return 0;
+/// Returns the strands that tell the size of a groom: those with a length, except few whose root is far from the roots of the
+/// others; all strands if none has a length.
+fn measured_strands(groom: &Groom) -> Vec<usize> {
+    let root = |s: usize| groom.strand(s).iter().copied().find(|p| p.is_finite());
+    let has_length = |s: &usize| {
+        let first = root(*s);
+        groom.strand(*s).iter().any(|p| p.is_finite() && Some(*p) != first)
+    };
+    let all = 0..groom.strand_count();
+    let strands: Vec<usize> = all.clone().filter(has_length).collect();
+    let roots: Vec<Vec3> = strands.iter().filter_map(|s| root(*s)).collect();
+    let is_near = nearness(roots.iter().copied());
+    let near: Vec<usize> = strands.iter().copied().filter(|s| root(*s).is_some_and(&is_near)).collect();
+    let far = strands.len() - near.len();
+    match (strands.is_empty(), far * FEWEST > strands.len()) {
+        (true, _) => all.collect(),
+        (_, true) => strands,
+        (_, false) => near,
     }
-    let others = groom.points.iter().copied().filter(|p| *p != Vec3::ZERO && p.is_finite());
-    let is_near = nearness(others.clone());
-    let (lo, hi) = bounds(others.filter(|p| is_near(*p)));
-    let outside = Vec3::ZERO.clamp(lo, hi).length();
-    if outside > 0.5 * (hi - lo).max_element() { at_origin } else { 0 }
+}
+
+/// Whether points exactly at the origin are no part of the hair: at most a tenth of all, and apart from the others.
+fn origin_is_apart<P: Iterator<Item = Vec3> + Clone>(points: &dyn Fn() -> P) -> bool {
+    let at_origin = points().filter(|p| *p == Vec3::ZERO).count();
+    if at_origin == 0 || at_origin * 10 > points().count() {
+        return false;
+    }
+    let others = || points().filter(|p| *p != Vec3::ZERO);
+    let is_near = nearness(others());
+    let (lo, hi) = bounds(others().filter(|p| is_near(*p)));
+    is_apart(Vec3::ZERO, lo, hi)
+}
+
+/// Whether a point is farther from a box than half of its longest side.
+fn is_apart(point: Vec3, lo: Vec3, hi: Vec3) -> bool {
+    (point - point.clamp(lo, hi)).length() > 0.5 * (hi - lo).max_element()
 }
 
 /// The longest side of the box around `points`, of which there are at most `count`. The hundredth of them that is

@@ -282,10 +282,12 @@ fn note(scale: f32, size: f32, plausible: bool) -> String {
     }
 }
 
-/// The median length of the strands [file units]; 0 if there are none.
+/// The median length of the strands that have one [file units]; 0 if there are none.
 fn median_length(groom: &Groom) -> f32 {
-    let mut lengths: Vec<f32> =
-        (0..groom.strand_count()).map(|s| groom.strand_length(s)).filter(|l| l.is_finite()).collect();
+    let mut lengths: Vec<f32> = (0..groom.strand_count())
+        .map(|s| groom.strand_length(s))
+        .filter(|l| l.is_finite() && *l > 0.0)
+        .collect();
     lengths.sort_by(f32::total_cmp);
     lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)
 }

@@ -51,7 +51,8 @@ impl ExternalFormats for PythonFormats {
     fn read_groom(&self, path: &Path, options: &ReadOptions) -> Result<ExternalFile<Groom>, ExternalError> {
         read_with_host(|host| {
             let read = host.call_method1("read_groom", (path, options.scale, up(options)))?;
-            let (arrays, group_names, unit_known, notes): (Bound<PyDict>, _, bool, _) = read.extract()?;
+            let (arrays, group_names, unit_known, mut notes): (Bound<PyDict>, _, bool, Vec<String>) =
+                read.extract()?;
             let density: Option<Floats> = arrays.get_item("density")?.map(|d| d.extract()).transpose()?;
             arrays.del_item("density").ok();
             let mut value = Groom { group_names, ..crate::groom::from_arrays(&arrays)? };
@@ -60,7 +61,14 @@ impl ExternalFormats for PythonFormats {
                 if shares.len() != value.strand_count() {
                     return Err(crate::errors::setting("`density` must have one number for each strand"));
                 }
+                let all = value.strand_count();
                 hairspring::groom::thin(&mut value, shares);
+                let left_out = all - value.strand_count();
+                if left_out > 0 {
+                    notes.push(format!(
+                        "the attribute `density` of the curves leaves out {left_out} of {all} strands; remove it to keep them"
+                    ));
+                }
             }
             Ok(ExternalFile { value, unit_known, notes })
         })

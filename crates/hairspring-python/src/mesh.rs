@@ -45,7 +45,11 @@ impl Body {
     fn read(py: Python<'_>, path: PathBuf, scale: Option<f32>, up: Option<&str>) -> PyResult<Self> {
         let options = ReadOptions { scale, up: axis(up)? };
         let loaded = py.detach(|| read_body(&path, &options)).map_err(file)?;
-        Ok(Self { inner: Arc::new(loaded.value.body), notes: loaded.notes })
+        let mut notes = loaded.notes;
+        notes.extend(
+            loaded.value.unplayed_note("; a Body stays at rest; name the file in a scene file to play one"),
+        );
+        Ok(Self { inner: Arc::new(loaded.value.body), notes })
     }
 
     /// What was guessed and left out when the file was read, one sentence each.

@@ -11,7 +11,7 @@ use crate::{
     frames::{self, FrameRange},
     input::Input,
     interrupt, output,
-    play::{Ending, play_from},
+    play::{Ending, play_from, set_up},
     totals::{self, Totals, grouped},
 };
 use cache::Cache;
@@ -19,10 +19,7 @@ use checkpoints::Checkpoints;
 use clap::Parser;
 use hairspring::material::Material;
 use hairspring_io::{Format, FrameWriter, Manifest, Origin};
-use hairspring_scene::{
-    Scene,
-    stage::{FrameRate, Stage},
-};
+use hairspring_scene::{Scene, stage::FrameRate};
 use samples::Samples;
 use selection::Selection;
 use serde_json::json;
@@ -203,8 +200,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         given => given.to_vec(),
     });
     let materials: Vec<_> = materials.collect();
-    let mut stage = Stage::new(scene)?;
-    console.note_all(stage.notes());
+    let mut stage = set_up(scene, console)?;
     let selection = Selection::new(&stage, options.only_guides);
     let grooms = selection.grooms(&stage);
     let (mut writer, left_out) = FrameWriter::new(&pattern, grooms.iter().map(|groom| groom.into()))?;

@@ -10,6 +10,7 @@ use crate::{
     input::{self, print_notes},
     output,
     picture::{Setup, Studio, View},
+    play::set_up,
     render::clip,
     totals::grouped,
 };
@@ -88,7 +89,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     };
     let mut picture = match options.no_picture {
         true => None,
-        false => Some(Picture::new(options, fps)?),
+        false => Some(Picture::new(options, fps, console)?),
     };
     let a = side(path, "--set-a", &options.set_a, options)?;
     let b = side(options.b.as_ref().unwrap_or(path), "--set-b", &options.set_b, options)?;
@@ -113,8 +114,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
         console.note("both pictures are drawn with the camera of A");
     }
     let paths = [a.path, b.path];
-    let mut stages = [Stage::new(a.scene)?, Stage::new(b.scene)?];
-    stages.iter().for_each(|stage| console.note_all(stage.notes()));
+    let mut stages = [set_up(a.scene, console)?, set_up(b.scene, console)?];
     if let Some(picture) = &mut picture {
         picture.begin(&mut stages, captions_of(&settings), &paths)?;
     }
@@ -233,7 +233,7 @@ struct Picture {
 }
 
 impl Picture {
-    fn new(options: &Options, fps: FrameRate) -> Result<Self, Fault> {
+    fn new(options: &Options, fps: FrameRate, console: Console) -> Result<Self, Fault> {
         let path = options.output.clone().unwrap_or(SHEET.into());
         let (width, height) = options.size.unwrap_or(SIZE);
         let [least_width, least_height] = SideBySide::SMALLEST;
@@ -253,7 +253,7 @@ impl Picture {
         let rows = if is_clip { 1 } else { MOMENTS };
         let [half_width, half_height] = SideBySide::half([width, height]);
         Ok(Self {
-            clip: if is_clip { Some(clip(&path, (width, height), fps.hertz())?) } else { None },
+            clip: if is_clip { Some(clip(&path, (width, height), fps.hertz(), console)?) } else { None },
             path,
             size: [width, height],
             view: View {

@@ -73,6 +73,31 @@ fn an_output_never_replaces_a_file_of_the_scene() {
 
 #[cfg(unix)]
 #[test]
+fn an_output_never_replaces_a_pipe_or_a_socket() {
+    use std::os::unix::{fs::FileTypeExt, net::UnixListener};
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    write_groom(f, 5);
+    for name in ["pipe.hair", "pipe.png", "pipe.mp4"] {
+        assert!(std::process::Command::new("mkfifo").arg(f.join(name)).status().unwrap().success());
+    }
+    let _socket = UnixListener::bind(f.join("socket.data")).unwrap();
+    for (arguments, to) in [
+        (&["convert", "groom.hair", "pipe.hair"][..], "pipe.hair"),
+        (&["convert", "groom.hair", "socket.data"], "socket.data"),
+        (&["bake", "groom.hair", "--frames", "1-1", "-o", "pipe.hair"], "pipe.hair"),
+        (&["render", "groom.hair", "-o", "pipe.png"], "pipe.png"),
+        (&["render", "groom.hair", "-o", "pipe.mp4"], "pipe.mp4"),
+    ] {
+        let stderr = fail(f, arguments, 5);
+        assert!(stderr.contains(&format!("{to} is a pipe, a socket or a device; name a file")), "{stderr}");
+        let kind = f.join(to).metadata().unwrap().file_type();
+        assert!(kind.is_fifo() || kind.is_socket(), "{arguments:?}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
 fn an_output_never_replaces_an_input_through_a_link() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();

@@ -3,7 +3,7 @@
 //! The keys are part of the interface: pipelines count strands and check bounds with them. The values are
 //! compared with the groom that the test wrote. Repairs made during reading are counted.
 
-use crate::common::{groom, json, succeed, text, write_groom, write_scene};
+use crate::common::{fail, groom, json, succeed, text, write_groom, write_scene};
 use glam::Vec3;
 
 #[test]
@@ -182,4 +182,32 @@ fn strands_are_reversed_on_request() {
     write_scene(folder.path(), 70);
     let error = crate::common::fail(folder.path(), &["info", "scene.toml", "--reverse"], 2);
     assert!(error.contains("--reverse applies to a groom file"), "{error}");
+}
+
+#[test]
+fn a_point_cache_is_described_in_its_own_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let f = folder.path();
+    // Three samples of a triangle.
+    let mut cache = b"POINTCACHE2\0".to_vec();
+    cache.extend([1i32, 3].map(i32::to_le_bytes).concat());
+    cache.extend([0f32, 1.0].map(f32::to_le_bytes).concat());
+    cache.extend(3i32.to_le_bytes());
+    for k in 0..3 {
+        let y = 0.5 * k as f32;
+        let sample: [f32; 9] = [0.0, y, 0.0, 1.0, y, 0.0, 0.0, y, -1.0];
+        cache.extend(sample.map(f32::to_le_bytes).concat());
+    }
+    std::fs::write(f.join("a.pc2"), cache).unwrap();
+    let found = json(&succeed(f, &["info", "a.pc2", "--json"]));
+    assert_eq!((&found["samples"], &found["points"]), (&3.into(), &3.into()));
+    assert_eq!(found["bounds_file_units"], serde_json::json!([[0.0, 0.0, -1.0], [1.0, 1.0, 0.0]]));
+    let stderr = fail(f, &["info", "a.pc2", "--scale", "0.01"], 2);
+    assert!(stderr.contains("--scale and --up do not apply to a .pc2 file"), "{stderr}");
+    // A scene that it moves has a motion.
+    std::fs::write(f.join("skin.obj"), "v 0 0 0\nv 1 0 0\nv 0 0 -1\nf 1 2 3\n").unwrap();
+    let scene = "[body]\nfile = \"skin.obj\"\nscale = 1.0\nvertex_cache = \"a.pc2\"\n[[groom]]\ngrow = { strands = 3 }\n";
+    std::fs::write(f.join("a.toml"), scene).unwrap();
+    let motion = json(&succeed(f, &["info", "a.toml", "--json"]))["motion"].clone();
+    assert_eq!(motion["frames"], 3, "{motion}");
 }

@@ -14,6 +14,7 @@ mod interrupts_leave_nothing_partial;
 mod out_of_memory_is_a_sentence;
 mod pictures_and_clips_are_written;
 mod pictures_hold_alpha_depth_and_motion;
+mod prerolls_show_progress;
 mod pressed_strands_are_reported;
 mod resume_checks_inputs_and_frames;
 mod standard_output_errors_are_reported;

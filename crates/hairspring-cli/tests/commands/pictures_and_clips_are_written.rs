@@ -132,6 +132,22 @@ fn a_scene_renders_as_a_clip() {
 }
 
 #[test]
+fn a_clip_of_an_odd_size_is_extended_with_a_note() {
+    let folder = tempfile::tempdir().unwrap();
+    write_groom(folder.path(), 20);
+    let render = |size: &str| {
+        let render = ["render", "groom.hair", "-o", "a.mp4", "--frames", "1-2", "--json", "--size", size];
+        let output = crate::common::run(folder.path(), &render);
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        let report = crate::common::json(&String::from_utf8(output.stdout).unwrap());
+        (report["size"].clone(), stderr.contains("a clip has an even width and height"))
+    };
+    assert_eq!(render("65x33"), ([66, 34].as_slice().into(), true));
+    assert_eq!(play(&folder.path().join("a.mp4")).1, (66, 34));
+    assert_eq!(render("64x34"), ([64, 34].as_slice().into(), false));
+}
+
+#[test]
 fn demo_writes_a_clip_and_a_still() {
     let folder = tempfile::tempdir().unwrap();
     let small = ["demo", "--strands", "3000", "--guides", "100", "--seconds", "0.25"];

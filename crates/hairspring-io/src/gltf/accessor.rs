@@ -54,11 +54,22 @@ impl<'a> Buffers<'a> {
     /// Returns the bytes of a view; `None` if they lie outside the buffer.
     fn view(&self, view: &View) -> Result<Option<&[u8]>, Problem> {
         let Some(stored) = self.of.get(view.buffer).copied().flatten() else {
-            return if view.is_meshopt() { Err(compressed("EXT_meshopt_compression")) } else { Ok(None) };
+            return match view.buffer < self.of.len() {
+                true if view.is_meshopt() => Err(compressed("EXT_meshopt_compression")),
+                true => Err(without_uri(view.buffer)),
+                false => Ok(None),
+            };
         };
         let end = view.byte_offset.checked_add(view.byte_length);
         Ok(end.and_then(|end| self.stored[stored].get(view.byte_offset..end)))
     }
+}
+
+/// The error for a buffer whose bytes the file does not hold.
+fn without_uri(buffer: usize) -> Problem {
+    Problem::whole(format!(
+        "buffer {buffer} has no `uri`, so its bytes are missing: the file is the JSON of a .glb without its binary chunk, or an extension that is not read holds them; export it as .glb, without compression"
+    ))
 }
 
 /// Reads the colors of accessor `index`, with or without opacity, which is left out.

@@ -115,7 +115,7 @@ pub(super) fn clips(
             for track in &tracks {
                 track.apply((time, on_key), &mut samples[offset + track.joint]);
             }
-            scales.check(&mut samples, joint_count, time);
+            scales.check(&mut samples, &skeleton.joints, time);
         }
         notes.extend(scales.notes(&name, skeleton));
         clips.push(Clip { name, rate, joint_count, samples });

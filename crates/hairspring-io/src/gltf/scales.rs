@@ -1,8 +1,8 @@
-//! Scales of joints that hair cannot follow: those of almost 0, and those that change their sign.
+//! Scales of joints that hair cannot follow: those of almost 0, and those with another sign than at rest.
 
 use super::skeleton::Skeleton;
 use glam::Vec3;
-use hairspring::body::Trs;
+use hairspring::body::{Joint, Trs};
 use std::collections::HashSet;
 
 /// Smallest scale of a joint along each axis [1]. Animators scale an object to 0 to hide it.
@@ -44,7 +44,8 @@ impl Found {
 impl Scales {
     /// Checks the last frame of `samples`, which is at `time` [s]. Joints whose scale is almost 0 get that of the frame before
     /// it, or 1.
-    pub(super) fn check(&mut self, samples: &mut [Trs], joint_count: usize, time: f32) {
+    pub(super) fn check(&mut self, samples: &mut [Trs], joints: &[Joint], time: f32) {
+        let joint_count = joints.len();
         let (earlier, last) = samples.split_at_mut(samples.len() - joint_count);
         for (joint, local) in last.iter_mut().enumerate() {
             if local.scale.abs().min_element() < SMALLEST_SCALE {
@@ -53,7 +54,8 @@ impl Scales {
                 self.hidden.add(joint, time);
             }
             let is_mirrored = |local: &Trs| local.scale.element_product() < 0.0;
-            if earlier.get(joint).is_some_and(|first| is_mirrored(first) != is_mirrored(local)) {
+            // Hair is built on the rest pose.
+            if is_mirrored(&joints[joint].rest) != is_mirrored(local) {
                 self.mirrored.add(joint, time);
             }
         }
@@ -68,7 +70,7 @@ impl Scales {
         });
         let mirrored = self.mirrored.named(skeleton).map(|(joints, time)| {
             format!(
-                "animation {animation:?} mirrors {joints} at {time:.2} s, because the scale changes its sign; hair is not mirrored and may point into the body; keep the sign of the scale"
+                "animation {animation:?} mirrors {joints} at {time:.2} s, because its scale has another sign than at rest; hair is not mirrored and may point into the body; keep the sign of the scale"
             )
         });
         hidden.into_iter().chain(mirrored)

@@ -7,22 +7,20 @@ use super::{
     sentence::unknown,
 };
 use crate::{
-    Character, ReadOptions, Result,
-    clip_choice::{clip_names, unplayed_note},
-    load,
+    Character, ReadOptions, Result, load,
     load::read_mesh,
     makehuman, obj,
     units::{self, UnitHint, WholeBody},
 };
 use glam::{Affine3A, Mat3A, Vec3};
-use hairspring::body::{Body, Clip, Joint, Mesh, Part, Skin};
+use hairspring::body::{Body, Joint, Mesh, Part, Skin};
 
 impl Reader<'_> {
     /// Reads a `[body]` or `[collision]` with its additional files. `what` names it in error messages.
     pub(super) fn body(&mut self, named: &BodyFile, what: &str) -> Result<Character> {
         let mut character = self.piece(named, what)?;
         if what != "body" {
-            self.note_unplayed(named, &character.clips, what);
+            self.note_unplayed(&named.file, &character, what);
         }
         if let Some(cache) = &named.vertex_cache {
             if what != "body" {
@@ -36,30 +34,31 @@ impl Reader<'_> {
             character.vertex_cache = Some(self.vertex_cache(named, cache, &character.body)?);
         }
         for file in &named.more {
-            let Character { body: piece, morphs, clips, .. } = self.body(file, what)?;
-            if (0..clips.len()).any(|clip| morphs.moves(clip)) {
+            let piece = self.body(file, what)?;
+            if (0..piece.clips.len()).any(|clip| piece.morphs.moves(clip)) {
                 let note = "its animated morph targets are left out; name the file as that of [body] itself";
                 self.note(&self.resolve(&file.file), vec![note.into()]);
             }
-            self.note_unplayed(file, &clips, what);
+            self.note_unplayed(&file.file, &piece, what);
             let carrier =
                 file.joint.as_deref().map(|name| self.joint(&character.body, name, file)).transpose()?;
-            join(&mut character.body, piece, carrier);
+            join(&mut character.body, piece.body, carrier);
         }
         Ok(character)
     }
 
     /// Adds a note if a file has motions, of which only those of the body's own file and of [clip] are played.
-    fn note_unplayed(&mut self, named: &BodyFile, clips: &[Clip], what: &str) {
-        let path = self.resolve(&named.file);
+    pub(super) fn note_unplayed(&mut self, file: &FileName, character: &Character, what: &str) {
+        let path = self.resolve(file);
         if self.played.contains(&path) {
             return;
         }
         let end = match what {
             "prop" => "; the [[prop]] moves by its `keys`",
+            "hull" => "; the hull moves with the `joint` of its [[collider]]",
             _ => "; the mesh moves with the joints of the [body]",
         };
-        self.note(&path, unplayed_note(&clip_names(clips), end).into_iter().collect());
+        self.note(&path, character.unplayed_note(end).into_iter().collect());
     }
 
     /// Reads one file of a body.

@@ -80,9 +80,6 @@ impl Reader<'_> {
             Some(named) => self.builtin(named)?,
             None => Scene::default(),
         };
-        let body_file = file.body.iter().map(|body| &body.file);
-        let moving = body_file.chain(file.clip.iter().filter_map(|clip| clip.file.as_ref()));
-        self.played = moving.map(|name| self.resolve(name)).collect();
         let character = match (&file.body, made.body.take()) {
             (Some(named), _) => {
                 // Its unit may be known already, for hulls.

@@ -86,7 +86,7 @@ pub(super) fn of_groups(materials: usize, groups: usize) -> Option<String> {
 }
 
 /// Returns a `[material.NAME]`: its preset, overridden by the given fields.
-fn overlaid(text: &str, table: &Spanned<toml::Table>) -> Result<Material, Problem> {
+pub(super) fn overlaid(text: &str, table: &Spanned<toml::Table>) -> Result<Material, Problem> {
     let start = table.span().start;
     let mut fields = table.get_ref().clone();
     let base = match fields.remove("preset") {

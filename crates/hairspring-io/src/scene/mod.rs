@@ -16,6 +16,7 @@ mod groom_file;
 mod grow;
 mod hull_points;
 mod implausible;
+pub mod inactive;
 mod map_file;
 mod maps;
 mod material;
@@ -78,6 +79,7 @@ pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
     reader.geometry(&file, &mut scene)?;
     reader.notes.extend(material::unused(&file));
     reader.notes.extend(implausible::notes(&file));
+    reader.notes.extend(inactive::notes(text, &file, &scene));
     let Reader { repairs, notes, .. } = reader;
     Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs, notes: load::plain(notes) })
 }
@@ -211,6 +213,7 @@ impl<'a> Reader<'a> {
         let options = ReadOptions { scale: *scale, up: None };
         let hint = self.whole.map_or(UnitHint::None, |whole| UnitHint::PartOf(whole, Affine3A::IDENTITY));
         let loaded = self.named(read_mesh(&path, &options, hint), &file, "hull")?;
+        self.note_unplayed(&file, &loaded.value, "hull");
         let vertices = loaded.value.body.mesh.positions;
         let (count, points) = (vertices.len(), hull_points::outermost(vertices));
         let mut notes = loaded.notes;

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{
     Character, Format, ReadOptions, Result,
-    clip_choice::{clip_names, first_note, pick_clip, unplayed_note},
+    clip_choice::{OF_VERTICES, first_note, pick_clip, unplayed_note},
     load::read_motion_at,
 };
 use hairspring::body::{
@@ -32,7 +32,7 @@ impl Reader<'_> {
                 Some(c) if file.builtin.is_some() => (Some(c.body), c.clips.into_iter().next(), None),
                 Some(c) => {
                     if let Some(body) = file.body.as_ref().filter(|_| c.vertex_cache.is_none()) {
-                        let note = unplayed_note(&clip_names(&c.clips), "; add [clip] to play one");
+                        let note = c.unplayed_note("; add [clip] to play one");
                         self.note(&self.resolve(&body.file), note.into_iter().collect());
                     }
                     (Some(c.body), None, c.vertex_cache)
@@ -46,6 +46,10 @@ impl Reader<'_> {
         let Some(character) = character else {
             return Err(self.wrong(near, "file", "[clip] moves a body, but there is no [body]".into()));
         };
+        if let (Some(body), Some(_)) = (&file.body, &character.vertex_cache) {
+            let note = unplayed_note(&[OF_VERTICES], "; [clip] replaces it");
+            self.note(&self.resolve(&body.file), note.into_iter().collect());
+        }
         if !named.keys.is_empty() {
             let pivot = named.pivot.unwrap_or_default();
             let keys: Vec<Key> = named.keys.iter().map(KeyFile::key).collect();

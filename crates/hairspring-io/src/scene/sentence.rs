@@ -6,6 +6,7 @@ use super::{
     parameters::definition,
 };
 use crate::Problem;
+use std::ops::Range;
 
 /// Line of a byte offset, counted from 1.
 pub(super) fn line_at(text: &str, byte: usize) -> usize {
@@ -18,6 +19,9 @@ pub(super) fn problem(text: &str, error: &toml::de::Error) -> Problem {
         Some(span) => {
             if is_wrong_escape(error.message()) {
                 return Problem::line(line_at(text, span.start), WRONG_ESCAPE);
+            }
+            if let Some(sentence) = given_twice(text, span.clone(), error.message()) {
+                return Problem::line(line_at(text, span.start), sentence);
             }
             if let Some(sentence) = wrong_brackets(text, span.start, error.message()) {
                 return Problem::line(line_at(text, span.start), sentence);
@@ -51,6 +55,19 @@ const WRONG_ESCAPE: &str = "a backslash in double quotes begins an escape sequen
 /// Whether TOML reports an escape sequence that it does not know.
 fn is_wrong_escape(message: &str) -> bool {
     ["missing escaped value", "too few unicode value digits"].iter().any(|start| message.starts_with(start))
+}
+
+/// The sentence for a key at `span` that the table already has.
+fn given_twice(text: &str, span: Range<usize>, message: &str) -> Option<String> {
+    let line = text.lines().nth(line_at(text, span.start) - 1)?;
+    let key = text.get(span).filter(|_| message == "duplicate key")?;
+    Some(match header_of(line) {
+        Some(_) if line.trim_start().starts_with("[[") => {
+            format!("`{key}` was one table before; write [[{key}]], with two brackets, for each")
+        }
+        Some(name) => format!("[{name}] is given twice; move its keys below the first header"),
+        None => format!("`{key}` is given twice in the same table; remove one of the two"),
+    })
 }
 
 /// The key of a field in its table.

@@ -16,6 +16,9 @@ fn is_portrait(file: &SceneFile) -> bool {
 impl Reader<'_> {
     /// Returns all settings; grooms have no strands. The built-in groom comes first.
     pub(super) fn settings(&mut self, file: &SceneFile) -> Result<Scene> {
+        let body_file = file.body.iter().map(|body| &body.file);
+        let moving = body_file.chain(file.clip.iter().filter_map(|clip| clip.file.as_ref()));
+        self.played = moving.map(|name| self.resolve(name)).collect();
         let base = match &file.builtin {
             None => Scene::default(),
             Some(named) => builtin::settings(self.text, file, named).map_err(|p| p.in_file(self.path))?,

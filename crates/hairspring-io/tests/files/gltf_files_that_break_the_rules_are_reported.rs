@@ -6,6 +6,7 @@ use crate::{
     gltf_file::{GltfFile, TETRAHEDRON},
 };
 use glam::{Affine3A, Quat, Vec3};
+use hairspring_io::gltf;
 use serde_json::json;
 
 #[test]
@@ -28,6 +29,19 @@ fn a_default_scene_that_does_not_exist_is_refused() {
         "{}",
         refused(&file)
     );
+}
+
+#[test]
+fn a_buffer_without_bytes_is_named() {
+    let mut file = GltfFile::tetrahedron();
+    file.json["buffers"] = json!([{"byteLength": file.bin.len()}]);
+    let text = gltf::parse(file.json.to_string().as_bytes(), &|_| None).unwrap_err().text;
+    assert!(
+        text.starts_with("buffer 0 has no `uri`, so its bytes are missing: the file is the JSON of a .glb"),
+        "{text}"
+    );
+    // In a .glb, the first buffer is the binary chunk.
+    assert!(read_tetrahedron(&file).is_empty());
 }
 
 #[test]

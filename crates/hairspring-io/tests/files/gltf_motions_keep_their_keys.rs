@@ -195,11 +195,16 @@ fn keys_at_one_time_and_before_0_s_are_noted() {
 
 #[test]
 fn a_joint_that_is_mirrored_is_noted() {
-    let mirrored = |values| {
-        let (_, notes) = gltf::parse(&moving("scale", 1.0, values).glb(), &|_| None).unwrap();
+    let notes_of = |file: GltfFile| {
+        let (_, notes) = gltf::parse(&file.glb(), &|_| None).unwrap();
         notes.iter().filter(|note| note.contains("mirrors the joint \"Head\" at 0.")).count()
     };
+    let mirrored = |values| notes_of(moving("scale", 1.0, values));
     assert_eq!(mirrored([[1.0; 3], [-1.0; 3]]), 1);
     assert_eq!(mirrored([[1.0; 3], [1.0, -1.0, -1.0]]), 0, "it is turned");
-    assert_eq!(mirrored([[-1.0, 1.0, 1.0]; 2]), 0, "it is so from the begin");
+    // From the first key on, but not at rest.
+    assert_eq!(mirrored([[-1.0, 1.0, 1.0]; 2]), 1);
+    let mut at_rest = moving("scale", 1.0, [[-1.0, 1.0, 1.0]; 2]);
+    at_rest.json["nodes"][0]["scale"] = json!([-1.0, 1.0, 1.0]);
+    assert_eq!(notes_of(at_rest), 0);
 }

@@ -123,6 +123,35 @@ fn stray_points_do_not_decide_the_unit() {
     }
 }
 
+#[test]
+fn strands_without_a_length_or_far_from_the_others_do_not_decide_the_unit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.data");
+    for length in [0.2, 0.5] {
+        for unit in [1.0, 100.0] {
+            let right = fur(CENTER, 0.1, length, unit);
+            let stub =
+                |at: Vec3| (0..6).map(|k| (at + Vec3::X * 0.001 * k as f32) * unit).collect::<Vec<_>>();
+            for (what, stray) in [
+                ("at the origin", vec![Vec3::ZERO; 6]),
+                ("of another place", vec![CENTER * 3.0 * unit; 6]),
+                ("without a number", vec![Vec3::NAN; 6]),
+                ("short, at the origin", stub(Vec3::ZERO)),
+                ("short, far away", stub(Vec3::splat(-40.0))),
+            ] {
+                let mut strands = right[..50].to_vec();
+                strands.iter_mut().step_by(5).for_each(|strand| *strand = stray.clone());
+                write_data(&path, &strands);
+                let loaded = read_groom(&path, &ReadOptions::default()).unwrap();
+                let notes = loaded.notes.join("\n");
+                assert_eq!(loaded.scale, 1.0 / unit, "10 of 50 strands {what}, {length} m: {notes}");
+                let mentioned = notes.contains("do not count");
+                assert_eq!(mentioned, what != "without a number", "{what}: {notes}");
+            }
+        }
+    }
+}
+
 /// `count` strands of `points` points of 20 cm, 2 cm apart, with the tips of the first `strays` 30 m away.
 fn small(count: usize, points: usize, strays: usize, far: f32) -> Vec<Vec<Vec3>> {
     let at = |s: usize, k: usize| {

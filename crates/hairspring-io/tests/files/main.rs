@@ -30,6 +30,7 @@ mod headless_bake_runs;
 mod hostile_files_are_bounded;
 mod motions_fit_the_body;
 mod motions_of_a_body_are_chosen_by_a_clip;
+mod motions_of_vertices_are_noted_if_not_played;
 mod obj_contents_without_a_use_are_reported;
 mod obj_files_of_exporters_are_read;
 mod ply_curves_are_strands;

@@ -75,6 +75,11 @@ fn motions_of_other_meshes_and_of_hair_are_noted() {
             "other.glb",
             "; the [[prop]] moves by its `keys`",
         ),
+        (
+            "[[collider]]\nshape = { hull = { file = \"other.glb\" } }".into(),
+            "other.glb",
+            "; the hull moves with the `joint` of its [[collider]]",
+        ),
         ("[[groom]]\nfile = \"hair.glb\"".into(), "hair.glb", " on the strands; they follow the [body]"),
     ] {
         let found = notes(&rest);

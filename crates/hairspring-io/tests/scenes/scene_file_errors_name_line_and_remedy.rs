@@ -16,6 +16,22 @@ fn errors_name_the_line_and_suggest_the_intended_word() {
         (format!("[solver]\nsubstep = 3\n{GROOM}"), &["line 2", "did you mean `substeps`?"]),
         (format!("[slover]\n{GROOM}"), &["line 1", "did you mean `solver`?"]),
         (format!("{GROOM}[volume]\nmethod = \"densty\"\n"), &["line 4", "did you mean `density`?"]),
+        (
+            format!("{GROOM}[solver]\nsubsteps = 2\nsag_free = true\nsubsteps = 3\n"),
+            &["scene.toml, line 6", "`substeps` is given twice in the same table; remove one of the two"],
+        ),
+        (
+            format!("{GROOM}look = {{ melanin = 0.5, melanin = 0.6 }}\n"),
+            &["line 3", "`melanin` is given twice in the same table"],
+        ),
+        (
+            format!("[solver]\n{GROOM}[solver]\nsubsteps = 3\n"),
+            &["line 4", "[solver] is given twice; move its keys below the first header"],
+        ),
+        (
+            format!("[groom]\nfile = \"hair.data\"\n{GROOM}"),
+            &["line 3", "`groom` was one table before; write [[groom]], with two brackets, for each"],
+        ),
         (format!("{GROOM}[volume]\ncell = 0\n"), &["line 4", "`cell` must be above 0, at most 1 [m]"]),
         (format!("{GROOM}[neighbours]\nradius = 0\n"), &["line 4", "`radius` must be above 0 [m]"]),
         (format!("{GROOM}[neighbours]\nstiction = -1\n"), &["line 4", "`stiction` must be 0 or more [N]"]),

@@ -118,7 +118,19 @@ impl Stage {
     ///
     /// # Errors
     /// If a setting is out of range, a joint does not exist, or hair is too far from the origin: see [`StageError`].
-    pub fn new(mut scene: Scene) -> Result<Self, StageError> {
+    pub fn new(scene: Scene) -> Result<Self, StageError> {
+        Self::with_preroll_progress(scene, &mut |_, _| {})
+    }
+
+    /// Like [`Stage::new`]. Calls `progress` when the pre-roll begins and after each of its frames, with the number of
+    /// finished frames and of all; never without a pre-roll.
+    ///
+    /// # Errors
+    /// See [`Stage::new`].
+    pub fn with_preroll_progress(
+        mut scene: Scene,
+        progress: &mut dyn FnMut(usize, usize),
+    ) -> Result<Self, StageError> {
         check(&scene)?;
         if let Some(body) = &scene.body {
             scene.grooms.iter_mut().for_each(|g| bind_roots(&mut g.groom, &body.mesh));
@@ -134,7 +146,7 @@ impl Stage {
             let first = hair.last().map_or(0, |hair| hair.first() + hair.simulated_strands().len());
             hair.push(StagedHair::new(groom, first, &scene, &body));
         }
-        preroll::settle(&mut hair, &scene, &body);
+        preroll::settle(&mut hair, &scene, &body, progress);
         let simulation =
             join_grooms::simulation(&hair, &scene, scene.solver, body.pose().anchor(), &body.poses());
         let (wind, hands) = (StagedWind::new(joints.wind), StagedHands::new(joints.hands));

@@ -32,8 +32,14 @@ const PUSH: f32 = 2.0;
 const MOVING: f32 = 0.6;
 
 /// Lets all of `hair` fall for `scene.solver.preroll` seconds from its groom, starting at rest, and pushes it out of
-/// the colliders that push. `body` must be in its initial pose. Without a pre-roll, hair is not changed.
-pub(super) fn settle(hair: &mut [StagedHair], scene: &Scene, body: &StagedBody) {
+/// the colliders that push. `body` must be in its initial pose. Without a pre-roll, hair is not changed. `progress` is
+/// called before the first frame and after each, with the number of finished frames and of all.
+pub(super) fn settle(
+    hair: &mut [StagedHair],
+    scene: &Scene,
+    body: &StagedBody,
+    progress: &mut dyn FnMut(usize, usize),
+) {
     let pushes = body.initial_pushes();
     let falls = scene.solver.preroll > 0.0;
     if !falls && pushes.is_empty() {
@@ -43,6 +49,9 @@ pub(super) fn settle(hair: &mut [StagedHair], scene: &Scene, body: &StagedBody) 
     let sag_free = scene.solver.sag_free && !falls;
     let solver = Solver { sag_free, integrator: Integrator::BackwardEuler, ..scene.solver };
     let anchor = body.pose().anchor();
+    let length = if pushes.is_empty() { scene.solver.preroll } else { scene.solver.preroll.max(PUSH) };
+    let frames = (length * RATE).ceil();
+    progress(0, frames as usize);
     let mut simulation = join_grooms::simulation(hair, scene, solver, anchor, &body.keeping_poses());
     // Volume and strand contact would preserve the volume of hair that stands out.
     simulation.set_volume(&Volume::default()).expect("settings of a scene are in range");
@@ -50,12 +59,10 @@ pub(super) fn settle(hair: &mut [StagedHair], scene: &Scene, body: &StagedBody) 
     let roots: Vec<RigidTransform> = hair.iter().flat_map(|hair| hair.roots()).copied().collect();
     let mut colliders = body.colliders().to_vec();
     let motions: Vec<Motion> = initial_push::motions(hair, body);
-    let length = if pushes.is_empty() { scene.solver.preroll } else { scene.solver.preroll.max(PUSH) };
-    let frames = (length * RATE).ceil();
     for frame in 0..frames as usize {
-        let progress = |frame: usize| (frame as f32 / (MOVING * frames)).min(1.0);
+        let moved = |frame: usize| (frame as f32 / (MOVING * frames)).min(1.0);
         for (push, motion) in pushes.iter().zip(&motions) {
-            motion.set(&mut colliders[push.collider].shape, (progress(frame), progress(frame + 1)));
+            motion.set(&mut colliders[push.collider].shape, (moved(frame), moved(frame + 1)));
         }
         simulation.step(&StepInput {
             dt: 1.0 / RATE,
@@ -64,6 +71,7 @@ pub(super) fn settle(hair: &mut [StagedHair], scene: &Scene, body: &StagedBody) 
             colliders: &colliders,
             air: Air::default(),
         });
+        progress(frame + 1, frames as usize);
     }
     for hair in hair {
         hair.rest_as(&simulation, body, &body.poses());

@@ -57,6 +57,19 @@ fn stage(scene: &Scene, preroll: f32, sag_free: bool) -> Stage {
 }
 
 #[test]
+fn the_progress_of_a_preroll_counts_its_frames() {
+    let counts = |preroll: f32| {
+        let solver = Solver { preroll, ..Solver::default() };
+        let mut counts = Vec::new();
+        let scene = Scene { solver, ..ball(Guides::Count(4)) };
+        Stage::with_preroll_progress(scene, &mut |done, all| counts.push((done, all))).unwrap();
+        counts
+    };
+    assert_eq!(counts(0.0), []);
+    assert_eq!(counts(0.1), [0, 1, 2, 3, 4, 5, 6].map(|done| (done, 6)));
+}
+
+#[test]
 fn preroll_gives_the_result_of_falling_in_the_scene() {
     for (name, scene) in [("ball", ball(Guides::All)), ("head", head())] {
         let mut falling = stage(&scene, 0.0, false);

@@ -38,6 +38,11 @@ pub struct ClipWriter {
     frames: u64,
 }
 
+/// Size of a clip of pictures of this size [pixels]: H.264 needs even sides.
+fn extended((width, height): (u32, u32)) -> (u32, u32) {
+    (width.next_multiple_of(2), height.next_multiple_of(2))
+}
+
 impl ClipWriter {
     /// Starts a clip of `width` × `height` pixels at `fps` frames per second. The size is at most 3840 × 2160
     /// or 2160 × 3840; an odd size is extended by one column or row. `fps` is above 0 and at most 240.
@@ -72,7 +77,7 @@ impl ClipWriter {
             Encoder::with_api_config(OpenH264API::from_source(), config).map_err(|e| wrong(e.to_string()))?;
         let temporary = beside(path)?;
         let file = temporary.reopen().map_err(|source| OutputError::File { path: path.into(), source })?;
-        let (even_width, even_height) = (width.next_multiple_of(2), height.next_multiple_of(2));
+        let (even_width, even_height) = extended((width, height));
         let muxer = MuxerBuilder::new(BufWriter::new(file))
             .video(VideoCodec::H264, even_width, even_height, fps)
             .with_fast_start(true)
@@ -89,6 +94,11 @@ impl ClipWriter {
             bits: Vec::new(),
             frames: 0,
         })
+    }
+
+    /// Returns the size of the clip [pixels]. It is that of the pictures, with an odd side extended by one.
+    pub fn size(&self) -> (u32, u32) {
+        extended(self.size)
     }
 
     /// Adds the next frame.
