@@ -7,6 +7,8 @@ use std::process::ExitCode;
 static MEMORY: out_of_memory::Watched = out_of_memory::Watched;
 
 /// Calls the function before the standard library begins.
+// SAFETY: the section holds pointers to functions without arguments that the C library calls in turn; this one reads a flag of
+// a file descriptor and sets an atomic, and so needs nothing of the standard library.
 #[cfg_attr(not(target_vendor = "apple"), unsafe(link_section = ".init_array"))]
 #[cfg_attr(target_vendor = "apple", unsafe(link_section = "__DATA,__mod_init_func"))]
 #[cfg(unix)]
