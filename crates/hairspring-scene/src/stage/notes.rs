@@ -9,9 +9,11 @@ use hairspring::{collide::ColliderShape, simulation::VolumeReport};
 /// and sheets only.
 const THIN_HULL: f32 = 5e-3;
 
-/// Radius of a rod or ball below which hair may pass through it, over the length of a segment [1]. At 0.0064, a rod loses 2
-/// to 5 of 60 strands, and at 0.01 none.
+/// Radius of a rod or ball, and half thickness of a box, below which hair may pass through it, over the length of a segment
+/// [1]. At 0.0064, a rod loses 2 to 5 of 60 strands, and at 0.01 none. For a box it is the depth that the contact of segments
+/// permits.
 const THIN_ROD: f32 = 0.0075;
+const THIN_BOX: f32 = 0.015;
 
 /// Depth of the shallowest root in a collider from which on it is reported [m]. Roots lie less deep in a shape that stands
 /// for the head.
@@ -23,37 +25,51 @@ const MUCH_COARSER: f32 = 1.5;
 
 impl Stage {
     /// Returns a sentence for each thing that cannot be as the scene asks: a collision mesh that is too thin for its
-    /// distance field, thin rods and hulls, hair that starts inside colliders, colliders around all roots, more guides than asked for,
+    /// distance field, thin rods, boxes and hulls, hair that starts inside colliders, colliders around all roots, more guides than asked for,
     /// and a volume whose cells are enlarged.
     /// It describes the current state, so it is called before the first step.
     pub fn notes(&self) -> Vec<String> {
         let thin = self.thin_mesh().map(|thin| thin.to_string());
         let inside = self.starts_inside().map(|inside| inside.to_string());
         let guides = self.hair.iter().filter_map(|hair| hair.more_than_asked());
-        let colliders =
-            self.thin_rod().into_iter().chain(self.thin_hull()).chain(inside).chain(self.around_all_roots());
+        let colliders = self
+            .thin_solids()
+            .into_iter()
+            .chain(self.thin_hull())
+            .chain(inside)
+            .chain(self.around_all_roots());
         guides.chain(thin).chain(colliders).chain(self.enlarged_cells()).collect()
     }
 
-    /// Describes the thinnest capsule or sphere, if hair may pass through it.
-    fn thin_rod(&self) -> Option<String> {
-        let radii = self.scene_colliders().iter().filter_map(|collider| match &collider.shape {
-            ColliderShape::Capsule { radius, .. } | ColliderShape::Sphere { radius, .. } => Some(*radius),
-            _ => None,
-        });
-        let thinnest = radii.fold(f32::INFINITY, f32::min);
+    /// Describes the thinnest capsule or sphere and the thinnest box, if hair may pass through it.
+    fn thin_solids(&self) -> Vec<String> {
         let strands = self.hair.iter().flat_map(StagedHair::simulated_points);
         let segments = strands.flat_map(|points| points.windows(2).map(|p| p[0].distance(p[1])));
         let longest = segments.fold(0.0, f32::max);
-        (thinnest < THIN_ROD * longest).then(|| {
+        let [mut rod, mut thin_box] = [f32::INFINITY; 2];
+        for collider in self.scene_colliders() {
+            match collider.shape {
+                ColliderShape::Capsule { radius, .. } | ColliderShape::Sphere { radius, .. } => {
+                    rod = rod.min(radius);
+                }
+                ColliderShape::Cuboid { half, .. } => thin_box = thin_box.min(half.min_element()),
+                _ => {}
+            }
+        }
+        let solids = [
+            ("a capsule or sphere has a radius", rod, 1.0, THIN_ROD),
+            ("a box has a thickness", thin_box, 2.0, THIN_BOX),
+        ];
+        let thin = solids.into_iter().filter(|(_, half, _, share)| *half < share * longest);
+        thin.map(|(what, half, sides, share)| {
+            let [size, least] = [half, share * longest].map(|half| 1e3 * sides * half);
             format!(
-                "a capsule or sphere has a radius of {:.2} mm, and the longest segment of the hair has {:.0} mm; hair may pass \
-                 through shapes with less than {:.2} mm; give the strands more points",
-                1e3 * thinnest,
-                1e3 * longest,
-                1e3 * THIN_ROD * longest
+                "{what} of {size:.2} mm, and the longest segment of the hair has {:.0} mm; hair may pass through shapes with less \
+                 than {least:.2} mm; give the strands more points",
+                1e3 * longest
             )
         })
+        .collect()
     }
 
     /// Describes the thinnest hull, if hair may pass through it.
@@ -146,17 +162,25 @@ mod tests {
     }
 
     #[test]
-    fn thin_rods_are_reported() {
+    fn thin_rods_and_boxes_are_reported() {
         let head = scene(&BuiltinOptions { strands: 100, ..BuiltinOptions::default() });
         let points = &head.grooms[0].groom.points;
         let longest = points.windows(2).map(|p| p[0].distance(p[1])).fold(0.0, f32::max);
-        let notes = |radius: f32| {
-            let shape = Shape::Capsule { a: Vec3::ZERO, b: Vec3::X, radius };
+        let notes = |shape: Shape, start: &str| {
             let colliders = vec![Collider { joint: None, initial: InitialContact::Keep, shape }];
             let notes = Stage::new(Scene { colliders, ..head.clone() }).unwrap().notes();
-            notes.into_iter().filter(|note| note.starts_with("a capsule or sphere has a radius")).count()
+            notes.into_iter().filter(|note| note.starts_with(start)).count()
         };
-        assert_eq!([notes(1e-5), notes(0.02 * longest)], [1, 0]);
+        for (size, count) in [(1e-5, 1), (0.02 * longest, 0)] {
+            let rod = Shape::Capsule { a: Vec3::ZERO, b: Vec3::X, radius: size };
+            assert_eq!(notes(rod, "a capsule or sphere has a radius"), count);
+            let plate = Shape::Box {
+                center: Vec3::ZERO,
+                size: Vec3::new(0.1, 0.1, 2.0 * size),
+                rotation: Vec3::ZERO,
+            };
+            assert_eq!(notes(plate, "a box has a thickness"), count);
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! A hanging strand with natural curvature: above a threshold weight it stays in its plane, below it winds
 //! out of the plane.
 
-use super::{NO_TWIST, THRESHOLD, USUAL};
+use super::{THRESHOLD, USUAL};
 use crate::{
     Case, Failure, GJ_OVER_EI, KAPPA_L, Method, Parameter, Quantity,
     plot::Sweep,
@@ -26,12 +26,11 @@ pub const CASE: Case = Case {
     points_fixed: false,
     min_points: 3,
     enough_points: 64,
-    fails_with: &[Model::Curvature, Model::Springs],
+    fails_with: &[Model::Springs],
     reason: |values, method| {
         let turn = values[0] / f64::from(method.points - 1);
         let segments = TAU / turn;
         match method.model {
-            Model::Curvature => Some(NO_TWIST.into()),
             Model::Springs if turn < 0.08 => None,
             Model::Springs => Some(format!(
                 "each joint turns by {turn:.2} rad at rest, where the springs resist twist more than the fiber does; at \

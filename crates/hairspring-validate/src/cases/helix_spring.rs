@@ -1,7 +1,7 @@
 //! A helical spring under small forces at its tip: along its axis, which twists the wire, and across it,
 //! which bends it.
 
-use super::{HAIR, NO_TWIST, USUAL};
+use super::{HAIR, USUAL};
 use crate::{
     Case, Failure, Method, Parameter, Quantity, TURNS,
     plot::Sweep,
@@ -28,11 +28,10 @@ pub const CASE: Case = Case {
     points_fixed: false,
     min_points: 3,
     enough_points: 32,
-    fails_with: &[Model::Curvature, Model::Springs],
+    fails_with: &[Model::Springs],
     reason: |values, method| {
         let segments = f64::from(method.points - 1) / values[0];
         match method.model {
-            Model::Curvature => Some(NO_TWIST.into()),
             Model::Springs if segments < 16.0 => Some(format!(
                 "a truss with {segments:.1} segments a turn is stiffer than the curve that it represents"
             )),

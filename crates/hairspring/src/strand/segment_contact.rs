@@ -17,7 +17,7 @@ use super::{
     system::System,
     tile::{Tile, rest, segment_contact, state},
 };
-use crate::collide::{ColliderPose, ColliderShape, DeepestPoint, STEEP};
+use crate::collide::{ColliderPose, ColliderShape, DeepestPoint, Edges, STEEP};
 use crate::simd::lanes::{F, Mask, Simd, Sym3, V3, Work, load, store};
 
 /// Distance to which the place of a contact follows the deepest place of its segment in a substep, as a fraction of
@@ -32,7 +32,7 @@ const JUMP: f32 = 0.01;
 /// of a box trembles by 5 mm/s, and at 1, hair over a stone by 2.6 mm/s.
 const STICK: f32 = 1.5;
 
-/// Rate at which the solve closes the gap of a segment inside an edge of a box [1/s]: the depth decreases to 1/e within 42
+/// Rate at which the solve closes the gap of a segment inside an edge of a thick box at rest [1/s]: the depth decreases to 1/e within 42
 /// ms.
 ///
 /// The gap is the distance across segment and edge. Where the segment is nearly parallel to a face, that is many times the
@@ -41,6 +41,9 @@ const STICK: f32 = 1.5;
 /// substep, 24, 76 and 195 of them never came to rest at 4, 8 and 16 substeps; at this rate 2, 3 and 5, and at half of it
 /// 1, 2 and 4. The idea is the soft contact of Box2D v3.
 const EDGE_RATE: f32 = 24.0;
+
+/// Speed below which an edge is at rest [m/s].
+const RESTS: f32 = 1e-3;
 
 /// Adds the contact of the segment from point `i`, the first of the window, to the strand's next, which is in
 /// the window as well.
@@ -87,9 +90,10 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     let m_h2 = load(simd, &tile.rest[outer][rest::MASS]) * (1.0 / (step.h * step.h));
     let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
     let force = shut.select(force, zero);
-    // In refined substeps, a thin box may be past the segment before a slow correction ends.
-    let share = if step.relaxation < 1.0 { 1.0 } else { (EDGE_RATE * step.h).min(1.0) };
-    let gap = at_edge.select(relaxed_gap(gap, normal.dot(carried), share), gap);
+    // An edge that moves, or in refined substeps, may be past the segment before a slow correction ends.
+    let slow = if step.relaxation < 1.0 { 1.0 } else { (EDGE_RATE * step.h).min(1.0) };
+    let rests = at_edge & carried.dot(carried).simd_lt((RESTS * step.h).powi(2));
+    let gap = rests.select(relaxed_gap(gap, normal.dot(carried), slow), gap);
     let gap = shut.select(gap, zero);
     store(force, &mut tile.segment_contacts[outer][segment_contact::FORCE]);
     let rows = &mut tile.segment_contacts[outer][segment_contact::FRICTION_STRETCH..];
@@ -142,7 +146,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
 }
 
 /// Returns the surface nearest to the place `at` of the segments from `a` to `a + e` (world), that place, and where it is
-/// the edge of a box.
+/// the edge of a box that is thicker than the segment is long.
 /// Where segments cross an edge of a box or a hull, the place follows the crossing. The distance there, along the
 /// normal across segment and edge, is continuous across the two faces. The colliders that are `passed` are left out; they
 /// have no straight edges.
@@ -159,7 +163,7 @@ fn nearest_edge<S: Simd>(
         || {
             let mut surface = nearest(simd, colliders, e.mul_add(at, a), passed);
             let mut at = at;
-            let mut at_edge = Mask::splat(simd, false);
+            let (mut at_edge, length) = (Mask::splat(simd, false), e.length_and_unit().0);
             let whole = (F::splat(simd, 0.0), F::splat(simd, f32::MAX));
             for pose in colliders {
                 if !has_straight_edges(pose) {
@@ -187,7 +191,8 @@ fn nearest_edge<S: Simd>(
                     surface.carried = V3::select(nearer, carried, surface.carried);
                     let tolerance = F::splat(simd, max_tolerance(pose));
                     surface.tolerance = nearer.select(tolerance, surface.tolerance);
-                    at_edge = (at_edge & !nearer) | (nearer & Mask::splat(simd, pose.edges.is_some()));
+                    let half = pose.edges.as_ref().map_or(0.0, Edges::half_thickness);
+                    at_edge = (at_edge & !nearer) | (nearer & length.simd_lt(2.0 * half));
                 }
             }
             (at, surface, at_edge)
