@@ -220,18 +220,18 @@ impl ColliderPose {
         holds: impl Fn(V3<S>) -> Mask<S>,
     ) -> Mask<S> {
         // Use as many samples as the longest of the eight segments needs.
-        let mut looks = 1;
-        while looks < MAX_SAMPLES
+        let mut samples = 1;
+        while samples < MAX_SAMPLES
             && size
-                .simd_gt(F::splat(simd, (cell * LONG.max(looks as f32 * SAMPLE_SPACING)).powi(2)))
+                .simd_gt(F::splat(simd, (cell * LONG.max(samples as f32 * SAMPLE_SPACING)).powi(2)))
                 .any_true()
         {
-            looks += 1;
+            samples += 1;
         }
         let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
         let mut held = Mask::splat(simd, false);
-        for k in 0..looks {
-            held |= holds(e.mul_add(F::splat(simd, -(k as f32 + 0.5) / looks as f32), p));
+        for k in 0..samples {
+            held |= holds(e.mul_add(F::splat(simd, -(k as f32 + 0.5) / samples as f32), p));
         }
         may & held
     }

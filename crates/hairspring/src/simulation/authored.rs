@@ -3,8 +3,8 @@
 
 use super::{
     Simulation,
-    along::{MIN_LENGTH, arc_lengths},
     build::simulated_points,
+    multipliers::{MIN_LENGTH, arc_lengths},
 };
 use crate::parallel::prelude::*;
 use crate::{

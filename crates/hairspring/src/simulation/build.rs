@@ -2,10 +2,10 @@
 
 use super::{
     Simulation, SimulationBuilder,
-    along::{self, arc_lengths},
     cpu_solver::CpuSolver,
     layout::Order,
     manipulators::Manipulators,
+    multipliers::{self, arc_lengths},
     strand_model::{StrandModel, material_of},
     strand_state::StrandState,
     teleport::Motion,
@@ -83,7 +83,7 @@ impl Simulation {
         let model = StrandModel {
             strand: vec![[Row::default(); strand::ROWS]; tiles.len()],
             rest: vec![[Row::default(); rest::ROWS]; first as usize],
-            along: Vec::new(),
+            multipliers: Vec::new(),
             rest_penetration: Vec::new(),
             passes: Vec::new(),
             tethers: Vec::new(),
@@ -126,14 +126,14 @@ impl Simulation {
         let rest_penetration = simulation.authored_depths(colliders);
         let passes = simulation.authored_passes(colliders);
         let tethers = simulation.tethers();
-        let along = along::constants(&simulation.model);
+        let multipliers = multipliers::constants(&simulation.model);
         let springs = simulation.model.tiles.iter().any(|tile| tile.model == Elastic::Springs);
         let rows = |at: usize| simulation.state.points.iter().map(|rows| rows[at]).collect();
         let tensions = [rows(state::TENSION), if springs { rows(springs::SIDE) } else { Vec::new() }];
         let model = Arc::make_mut(&mut simulation.model);
         model.start.coils = coils;
         (model.tensions, model.rest_penetration, model.tethers) = (tensions, rest_penetration, tethers);
-        (model.along, model.passes) = (along, passes);
+        (model.multipliers, model.passes) = (multipliers, passes);
         simulation
     }
 
@@ -323,7 +323,7 @@ fn radii(material: &Material, groom: &Groom, s: usize) -> Vec<f32> {
 /// Cross section at each of the strand's `points`.
 fn sections(material: &Material, scale: StrandScale, points: &[Vec3]) -> Vec<Section> {
     let lengths = arc_lengths(points);
-    let whole = lengths[lengths.len() - 1].max(along::MIN_LENGTH);
+    let whole = lengths[lengths.len() - 1].max(multipliers::MIN_LENGTH);
     lengths.iter().map(|length| Section::new(material, scale, length / whole)).collect()
 }
 

@@ -35,7 +35,7 @@ impl StrandSolver for CpuSolver {
             holds: &state.holds,
             rest: &model.rest,
             state: &mut state.points,
-            along: &model.along,
+            multipliers: &model.multipliers,
             history: &mut state.history,
             external_acceleration: &forces.external_acceleration,
             position_spring: &forces.position_spring,

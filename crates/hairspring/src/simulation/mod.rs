@@ -20,7 +20,6 @@
 //! # Ok::<(), hairspring::simulation::BuildError>(())
 //! ```
 
-mod along;
 mod authored;
 mod build;
 mod builder;
@@ -37,6 +36,7 @@ mod hold;
 mod layout;
 mod manipulators;
 mod measure;
+mod multipliers;
 mod place;
 mod points;
 mod reset;
@@ -167,7 +167,7 @@ impl Simulation {
         size_of_val(&self.state.roots[..])
             + size_of_val(&self.model.strand[..])
             + size_of_val(&self.model.rest[..])
-            + size_of_val(&self.model.along[..])
+            + size_of_val(&self.model.multipliers[..])
             + size_of_val(&self.state.points[..])
             + size_of_val(&self.model.rest_penetration[..])
             + size_of_val(&self.state.contact_age[..])

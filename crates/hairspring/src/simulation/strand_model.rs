@@ -8,7 +8,7 @@ use crate::{
     simd::lanes::Row,
     strand::{
         rest_shape::Start,
-        tile::{AlongRows, RestRows, StrandRows, TileLayout},
+        tile::{MultiplierRows, RestRows, StrandRows, TileLayout},
     },
 };
 use glam::Vec3;
@@ -35,7 +35,7 @@ pub(crate) struct StrandModel {
     pub(super) rest: Vec<RestRows>,
     /// Multipliers of the strands' constants at each particle; as long as `rest`, or empty if no material has a
     /// profile of drag, damping or friction.
-    pub(super) along: Vec<AlongRows>,
+    pub(super) multipliers: Vec<MultiplierRows>,
     /// Authored depth of the segment that ends at each point, 0 or less [m]; as long as `rest`, or empty if no
     /// segment was authored inside a collider.
     pub(super) rest_penetration: Vec<Row>,

@@ -7,7 +7,7 @@
 use super::{Simulation, strand_model::StrandModel, strand_state::StrandState};
 use crate::{
     simd::lanes::{LANES, Row},
-    strand::tile::{Elastic, TileLayout, along, rest, root, segment_contact, springs, state, strand},
+    strand::tile::{Elastic, TileLayout, multipliers, rest, root, segment_contact, springs, state, strand},
 };
 use glam::{DVec3, Quat, Vec3};
 
@@ -125,7 +125,7 @@ impl<'a> StrandRef<'a> {
 
     /// Relaxation time of bending at particle `i` [s].
     pub fn damping(self, i: usize) -> f32 {
-        self.constant(strand::DAMPING) * self.along(i, along::DAMPING).unwrap_or(1.0)
+        self.constant(strand::DAMPING) * self.multiplier(i, multipliers::DAMPING).unwrap_or(1.0)
     }
 
     /// Reynolds number over the speed of the air across the fiber, d/ν [s/m].
@@ -145,17 +145,17 @@ impl<'a> StrandRef<'a> {
 
     /// Twisting over bending stiffness at particle `i`, GJ/EI [1].
     pub fn twist_ratio(self, i: usize) -> f32 {
-        self.along(i, along::TWIST_RATIO).unwrap_or(self.constant(strand::TWIST_RATIO))
+        self.multiplier(i, multipliers::TWIST_RATIO).unwrap_or(self.constant(strand::TWIST_RATIO))
     }
 
     /// Relative additional bending stiffness at particle `i` in the plane of the frame's normal, ΔB/B [1].
     pub fn flatness(self, i: usize) -> f32 {
-        self.along(i, along::FLAT).unwrap_or(self.constant(strand::FLAT))
+        self.multiplier(i, multipliers::FLAT).unwrap_or(self.constant(strand::FLAT))
     }
 
     /// A constant that varies along the strand, at particle `i`; `None` if no material has such a profile.
-    fn along(self, i: usize, row: usize) -> Option<f32> {
-        Some(self.model.along.get(self.at(i))?[row].0[self.lane % LANES])
+    fn multiplier(self, i: usize, row: usize) -> Option<f32> {
+        Some(self.model.multipliers.get(self.at(i))?[row].0[self.lane % LANES])
     }
 
     /// Vector from the particle before to particle `i` [m].

@@ -1,6 +1,6 @@
 //! Changes settings of a running simulation in place, where rest shapes do not depend on them.
 
-use super::{Simulation, along, build::write_surface, strand_model::material_of};
+use super::{Simulation, build::write_surface, multipliers, strand_model::material_of};
 use crate::{
     material::Material,
     settings::{OutOfRange, Solver, Validate, validate_gravity},
@@ -54,10 +54,10 @@ impl Simulation {
                 let scale = model.groom.scale(s);
                 write_surface(&mut model.strand[lane / LANES], lane % LANES, material, scale);
             }
-            // `along` depends on friction, because friction times its profile is clamped to 1.
-            let (tethers, along) = (self.tethers(), along::constants(&self.model));
+            // The multipliers depend on friction, because friction times its profile is clamped to 1.
+            let (tethers, multipliers) = (self.tethers(), multipliers::constants(&self.model));
             let model = Arc::make_mut(&mut self.model);
-            (model.tethers, model.along) = (tethers, along);
+            (model.tethers, model.multipliers) = (tethers, multipliers);
         }
         if self.model.gravity != gravity {
             Arc::make_mut(&mut self.model).gravity = gravity;

@@ -12,7 +12,7 @@ use super::{
     root::Root,
     scratch::Scratch,
     system::System,
-    tile::{Tile, along, rest, state},
+    tile::{Tile, multipliers, rest, state},
 };
 use crate::simd::lanes::{F, Simd, V3, Work, load};
 
@@ -101,8 +101,8 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         cursor.x += V3::load(simd, &edges[next]);
         let row = &tile.rest[next];
         let mass = load(simd, &row[rest::MASS]);
-        if let Some(rows) = tile.along.get(next) {
-            let damping = Root::<S>::fiber(simd, tile.strand).1 * load(simd, &rows[along::DAMPING]);
+        if let Some(rows) = tile.multipliers.get(next) {
+            let damping = Root::<S>::fiber(simd, tile.strand).1 * load(simd, &rows[multipliers::DAMPING]);
             cursor.at.damped = damping * (1.0 / cursor.at.h) + 1.0;
         }
         if phase + 1 < M::STRIDE {
@@ -143,7 +143,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         band.add_block(1, 1 + M::STRIDE, &-block.full());
         band.add_force(1, force);
         band.add_force(1 + M::STRIDE, -force);
-        let air = tile.at_particle(cursor.half_drag, next, along::DRAG)
+        let air = tile.at_particle(cursor.half_drag, next, multipliers::DRAG)
             * (load(simd, &tile.rest[before][rest::LENGTH]) + length);
         Segment { u, mass, air }
     }

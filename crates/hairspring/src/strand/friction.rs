@@ -13,7 +13,7 @@
 //! Friction*, by a fraction and keeps their v_s. A discontinuous change would release every point that
 //! vibrates.
 
-use super::tile::{Tile, along, strand};
+use super::tile::{Tile, multipliers, strand};
 use crate::simd::lanes::{F, Simd, V3, load};
 
 /// v_s of the formula: the speed at which friction is halfway from static to kinetic [m/s].
@@ -34,7 +34,7 @@ impl<S: Simd> Friction<S> {
     #[inline(always)]
     pub fn of(simd: S, h: f32, tile: &Tile, i: usize) -> Self {
         Self {
-            holds: tile.at_particle(load(simd, &tile.strand[strand::FRICTION]), i, along::FRICTION),
+            holds: tile.at_particle(load(simd, &tile.strand[strand::FRICTION]), i, multipliers::FRICTION),
             kinetic: load(simd, &tile.strand[strand::FRICTION_KINETIC]),
             halfway: 1.0 / (h * TRANSITION_SPEED),
         }

@@ -21,8 +21,8 @@ use super::{
     substitute::substitute,
     system::System,
     tile::{
-        AlongRows, Elastic, RestRows, RootRows, StateRows, StrandRows, Tile, TileLayout, TileRange, rest,
-        root, state, strand,
+        Elastic, MultiplierRows, RestRows, RootRows, StateRows, StrandRows, Tile, TileLayout, TileRange,
+        rest, root, state, strand,
     },
     truss::ASIDE,
 };
@@ -392,7 +392,7 @@ pub fn rows(s: &reference::Strand) -> ((RootRows, StrandRows), Vec<RestRows>, Ve
 fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, Vec<DVec3>) {
     let n = s.x.len();
     let ((root_rows, strand_rows), rest_rows, mut state_rows, normals) = rows(s);
-    let along_rows: Vec<AlongRows> = s
+    let multiplier_rows: Vec<MultiplierRows> = s
         .along
         .iter()
         .map(|at| [at[0], at[1], 1.0, reference::TWIST_RATIO, 0.0].map(|x| Row([x as f32; LANES])))
@@ -406,7 +406,7 @@ fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, V
         strand: &[strand_rows],
         rest: &rest_rows,
         state: &mut state_rows,
-        along: &along_rows,
+        multipliers: &multiplier_rows,
         contact_age: &mut [Row::default()],
         holds: &[Vec::new()],
         ..TileRange::default()

@@ -52,7 +52,7 @@ pub mod rest {
 }
 
 /// Rows of the constants that vary along a strand, at each particle.
-pub mod along {
+pub mod multipliers {
     /// Multiplier of `strand::DRAG` [1].
     pub const DRAG: usize = 0;
     /// Multiplier of `strand::DAMPING` [1].
@@ -220,7 +220,7 @@ pub type RestRows = [Row; rest::ROWS];
 /// The state of one point of eight strands.
 pub type StateRows = [Row; state::ROWS];
 /// The constants at one particle of eight strands.
-pub type AlongRows = [Row; along::ROWS];
+pub type MultiplierRows = [Row; multipliers::ROWS];
 
 /// The contact of the segment that ends at one point, for eight strands.
 pub type SegmentContactRows = [Row; segment_contact::ROWS];
@@ -245,8 +245,8 @@ tile_arrays! {
         /// Rest shapes, with the points of the longest strand; as long as `state`.
         rest: shared RestRows,
         state: unique StateRows,
-        /// Constants that vary along the strands, see `along`; not in use if no material has such a profile.
-        along: shared AlongRows,
+        /// Constants that vary along the strands, see `multipliers`; not in use if no material has such a profile.
+        multipliers: shared MultiplierRows,
         /// Only for the second-order integrator.
         history: unique HistoryRows,
         /// External acceleration, constant over the frame [m/s²]. For a point with a position spring, it holds
@@ -275,10 +275,10 @@ tile_arrays! {
 }
 
 impl Tile<'_> {
-    /// Returns a constant of the strands at particle `i`: `value` times the row `row` of `along`.
+    /// Returns a constant of the strands at particle `i`: `value` times the row `row` of its multipliers.
     #[inline(always)]
     pub fn at_particle<S: Simd>(&self, value: F<S>, i: usize, row: usize) -> F<S> {
-        match self.along.get(i) {
+        match self.multipliers.get(i) {
             Some(rows) => value * load(value.simd, &rows[row]),
             None => value,
         }

@@ -11,7 +11,7 @@
 //! after it           v ← v + A⁻¹ Jᵀ p             p by projected Gauss–Seidel, so that no segments
 //!                    x ← x + h A⁻¹ Jᵀ p           overlap that did not before;
 //!                                                 A the response of strands: masses and bending (`response`),
-//!                                                 and constant lengths (`along`)
+//!                                                 and constant lengths (`propagation`)
 //! carried            F ← what acted both in this substep and in the one before, F + p/h
 //! ```
 //!
@@ -46,11 +46,11 @@
 //!   another.
 //! - A narrow tie does not gather them, because they support each other.
 
-mod along;
 mod closest;
 mod contact;
 mod grid;
 mod hair;
+mod propagation;
 mod response;
 mod rest;
 #[cfg(test)]
@@ -60,10 +60,10 @@ pub(crate) use contact::Contact;
 pub(crate) use hair::Hair;
 
 use crate::settings;
-use along::Along;
 use contact::{ContactResponse, SolverParams};
 use glam::{Mat3, Quat, Vec3};
 use grid::Grid;
+use propagation::Propagation;
 
 /// Iterations over all contacts after a substep. More would help in piles; the remaining approach velocity is
 /// corrected in the next substep.
@@ -82,7 +82,7 @@ pub(crate) struct Neighbours {
     crowded: usize,
     pub hair: Hair,
     grid: Grid,
-    along: Along,
+    propagation: Propagation,
     /// Sorted by pair of segments.
     contacts: Vec<Contact>,
     before: Vec<Contact>,
@@ -128,7 +128,7 @@ impl Neighbours {
             settings: *settings,
             radius,
             crowded: 0,
-            along: Along::new(&hair),
+            propagation: Propagation::new(&hair),
             hair,
             grid,
             contacts: Vec::with_capacity(most),
@@ -202,13 +202,13 @@ impl Neighbours {
 
     /// Change of the velocity of point `i` by the last [`Neighbours::solve_contacts`] [m/s].
     pub fn change(&self, i: usize) -> Vec3 {
-        self.along.change(i, &self.hair)
+        self.propagation.change(i, &self.hair)
     }
 
     /// Finds the contacts of `hair` after a substep of `h` [s], and changes velocities so that no segments
     /// overlap once points have moved by `h` times the [`Neighbours::change`].
     pub fn solve_contacts(&mut self, h: f32) {
-        let Self { hair, grid, along, contacts, before, responses, .. } = self;
+        let Self { hair, grid, propagation, contacts, before, responses, .. } = self;
         std::mem::swap(contacts, before);
         contacts.clear();
         grid.sort(hair, h);
@@ -226,13 +226,13 @@ impl Neighbours {
         let rules = SolverParams { h, friction: self.settings.friction, stiction: self.settings.stiction };
         responses.clear();
         responses.resize_with(contacts.len(), || None);
-        along.begin(hair);
+        propagation.begin(hair);
         for _ in 0..SWEEPS {
             contacts
                 .iter_mut()
                 .zip(&mut *responses)
                 .for_each(|(contact, responses)| contact.solve(responses, &rules, hair));
-            along.keep_lengths(hair);
+            propagation.keep_lengths(hair);
         }
         contacts.iter_mut().for_each(|contact| contact.carry(&rules, hair));
     }

@@ -1,7 +1,7 @@
 //! Tests of strand contact on free hair: impulses conserve momentum, and the broad phase finds every pair
 //! once.
 
-use super::{Neighbours, along::Along, closest::closest, grid::Grid, hair::Hair};
+use super::{Neighbours, closest::closest, grid::Grid, hair::Hair, propagation::Propagation};
 use crate::settings;
 use glam::{DVec3, Vec3};
 
@@ -44,7 +44,7 @@ fn momentum_is_kept() {
         radius: 0.001,
         crowded: 0,
         grid: Grid::new(segments),
-        along: Along::new(&hair),
+        propagation: Propagation::new(&hair),
         hair,
         contacts: Vec::with_capacity(16 * segments),
         before: Vec::with_capacity(16 * segments),

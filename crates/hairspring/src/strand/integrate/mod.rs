@@ -27,7 +27,7 @@ use super::{
     precomputed::precompute,
     root::Root,
     scratch::{Memory, Scratch},
-    tile::{Tile, along, anisotropic_drag, position_spring, rest, segment_contact, state},
+    tile::{Tile, anisotropic_drag, multipliers, position_spring, rest, segment_contact, state},
 };
 use crate::simd::lanes::{F, Mask, Simd, V3, load, store};
 use crate::{
@@ -142,7 +142,7 @@ fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u
     // Drag acts on the half segments adjacent to the point. Extra particles are not part of the fiber and
     // have none.
     let around = if i.is_multiple_of(stride) { (length(i - stride) + length(i)) * 0.5 } else { zero };
-    let drag = tile.at_particle(Root::<S>::fiber(simd, tile.strand).0, i, along::DRAG) * around
+    let drag = tile.at_particle(Root::<S>::fiber(simd, tile.strand).0, i, multipliers::DRAG) * around
         / load(simd, &tile.rest[i][rest::MASS]);
     // Explicit integration: a larger coefficient would overshoot the velocity of the air.
     let stable = |coefficient: F<S>| (drag * coefficient).min(1.0 / step.h);

@@ -8,7 +8,7 @@ use crate::{
         bordered::BorderedConstraint,
         root::Root,
         scratch::Scratch,
-        tile::{Tile, along, springs, state},
+        tile::{Tile, multipliers, springs, state},
     },
 };
 
@@ -47,7 +47,7 @@ pub fn across<S: Simd>(
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
     let k = flattened(p, rest).select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
     let (direction, c, extension) = altitude(simd, [V3::zero(simd), p[0], p[1], p[2]], kept);
-    let damping = tile.at_particle(Root::<S>::fiber(simd, tile.strand).1, i, along::DAMPING);
+    let damping = tile.at_particle(Root::<S>::fiber(simd, tile.strand).1, i, multipliers::DAMPING);
     let damped = damping * (1.0 / h) + 1.0;
     // Elements beyond the tip have no stiffness, so the clamped index does no harm.
     let tip = tile.rest.len() - 1;

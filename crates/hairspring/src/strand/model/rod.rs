@@ -50,7 +50,7 @@ use crate::{
         root::Root,
         scratch::{Memory, Scratch},
         system::System,
-        tile::{Tile, along, rest, state, strand},
+        tile::{Tile, multipliers, rest, state, strand},
     },
 };
 use fearless_simd::Level;
@@ -116,8 +116,8 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
     fn add(&mut self, simd: S, at: &At<S>, _: &Scratch, tile: &mut Tile, band: &mut Band<S, 4, 11>) {
         let one = F::<S>::splat(simd, 1.0);
         let own = &tile.rest[at.i + 1];
-        let (twist_ratio, flat) = match tile.along.get(at.i + 1) {
-            Some(rows) => (load(simd, &rows[along::TWIST_RATIO]), load(simd, &rows[along::FLAT])),
+        let (twist_ratio, flat) = match tile.multipliers.get(at.i + 1) {
+            Some(rows) => (load(simd, &rows[multipliers::TWIST_RATIO]), load(simd, &rows[multipliers::FLAT])),
             None => (self.twist_ratio, self.flat),
         };
         let [u0, u1] = at.u;

@@ -42,7 +42,7 @@ use crate::{
         root::Root,
         scratch::{Memory, Scratch},
         system::System,
-        tile::{Tile, along, springs, state, strand},
+        tile::{Tile, multipliers, springs, state, strand},
     },
 };
 use fearless_simd::Level;
@@ -142,7 +142,7 @@ pub fn run(level: Level, frame: &FrameContext, tile: &mut Tile, memory: &mut Mem
 /// `truss`) [N/m].
 #[inline(always)]
 pub fn brace<S: Simd>(simd: S, h: f32, tile: &Tile, point: usize) -> F<S> {
-    let damping = tile.at_particle(load(simd, &tile.strand[strand::DAMPING]), point, along::DAMPING);
+    let damping = tile.at_particle(load(simd, &tile.strand[strand::DAMPING]), point, multipliers::DAMPING);
     let damped = damping * (1.0 / h) + 1.0;
     load(simd, &tile.rest[point][springs::BRACE]) * damped
 }

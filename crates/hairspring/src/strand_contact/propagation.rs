@@ -14,7 +14,7 @@ use glam::Vec3;
 
 /// Working memory for one strand, and the velocities of all points before any impulse.
 #[derive(Default)]
-pub struct Along {
+pub struct Propagation {
     /// Velocities before any impulse, shape `[points]` [m/s].
     before: Vec<Vec3>,
     /// Unit vectors of a strand's segments.
@@ -23,7 +23,7 @@ pub struct Along {
     rows: Vec<[f32; 2]>,
 }
 
-impl Along {
+impl Propagation {
     /// Allocates memory for the strands of `hair`.
     pub fn new(hair: &Hair) -> Self {
         let longest = hair.strands().map(|s| s.len()).max().unwrap_or(0);
@@ -39,7 +39,7 @@ impl Along {
         self.before.copy_from_slice(&hair.v);
     }
 
-    /// Change of the velocity of point `i` since [`Along::begin`] [m/s].
+    /// Change of the velocity of point `i` since [`Propagation::begin`] [m/s].
     pub fn change(&self, i: usize, hair: &Hair) -> Vec3 {
         hair.v[i] - self.before[i]
     }

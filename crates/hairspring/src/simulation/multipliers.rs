@@ -1,4 +1,4 @@
-//! Constants that vary along the strands: the profiles of drag, damping, friction and flatness at each particle.
+//! Multipliers that vary along the strands: the profiles of drag, damping, friction and flatness at each particle.
 
 use super::strand_model::StrandModel;
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     simd::lanes::{LANES, Row},
     strand::{
         section::Section,
-        tile::{AlongRows, along},
+        tile::{MultiplierRows, multipliers},
     },
 };
 use glam::Vec3;
@@ -14,8 +14,8 @@ use glam::Vec3;
 /// Smallest length of a strand that is divided by [m].
 pub(super) const MIN_LENGTH: f64 = 1e-9;
 
-/// Returns the constants at every particle, see `along`; empty if no material has such a profile.
-pub(super) fn constants(model: &StrandModel) -> Vec<AlongRows> {
+/// Returns the constants at every particle, see `tile::multipliers`; empty if no material has such a profile.
+pub(super) fn constants(model: &StrandModel) -> Vec<MultiplierRows> {
     let is_varied = |m: &Material| {
         [&m.drag_profile, &m.damping_profile, &m.friction_profile, &m.flatness_profile]
             .iter()
@@ -24,7 +24,7 @@ pub(super) fn constants(model: &StrandModel) -> Vec<AlongRows> {
     if !model.materials.iter().any(is_varied) {
         return Vec::new();
     }
-    let mut rows = vec![[Row([1.0; LANES]); along::ROWS]; model.rest.len()];
+    let mut rows = vec![[Row([1.0; LANES]); multipliers::ROWS]; model.rest.len()];
     for (place, s) in model.groom_strands.iter().enumerate().filter(|(_, s)| **s != u32::MAX) {
         let (s, tile) = (*s as usize, model.tiles[place / LANES]);
         let (material, scale) = (model.material(s), model.groom.scale(s));
@@ -40,12 +40,12 @@ pub(super) fn constants(model: &StrandModel) -> Vec<AlongRows> {
             let at = (ends[point] + (next - ends[point]) * part) / whole;
             let rows = &mut rows[tile.first as usize + particle];
             let value = |profile: &[f32]| profile_at(profile, at) as f32;
-            rows[along::DRAG].0[place % LANES] = value(&material.drag_profile);
-            rows[along::DAMPING].0[place % LANES] = value(&material.damping_profile);
-            rows[along::FRICTION].0[place % LANES] = value(&material.friction_profile).min(most);
+            rows[multipliers::DRAG].0[place % LANES] = value(&material.drag_profile);
+            rows[multipliers::DAMPING].0[place % LANES] = value(&material.damping_profile);
+            rows[multipliers::FRICTION].0[place % LANES] = value(&material.friction_profile).min(most);
             let section = Section::new(material, scale, at);
-            rows[along::TWIST_RATIO].0[place % LANES] = section.twist_ratio;
-            rows[along::FLAT].0[place % LANES] = section.flat;
+            rows[multipliers::TWIST_RATIO].0[place % LANES] = section.twist_ratio;
+            rows[multipliers::FLAT].0[place % LANES] = section.flat;
         }
     }
     rows
