@@ -14,7 +14,7 @@ fn figures_stay_on_the_picture() {
         window.set_size(size.into());
         (0..4).for_each(|_| window.step());
         let panel = window.get_by_label("Style").rect();
-        let controls = window.get_by_label("Look").rect();
+        let controls = window.get_by_label("Play").rect();
         for text in ["simulated with", "right: stretch", "CPU: "] {
             let figures = window.get_by_label_contains(text).rect();
             assert!(figures.max.x <= panel.min.x, "{size:?}: {figures} covers the panel at {panel}");
