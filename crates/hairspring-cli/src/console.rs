@@ -26,8 +26,8 @@ static UNPRINTED: Mutex<Option<io::Error>> = Mutex::new(None);
 /// Whether standard output was closed when the program began.
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Remembers whether standard output is closed. The standard library opens `/dev/null` in its place when the program begins,
-/// and takes writing to a closed one for a success, so what is printed would be lost without an error.
+/// Remembers whether standard output is closed. When the program begins, the standard library replaces a closed output by
+/// `/dev/null`. What is printed would then be lost without an error.
 pub extern "C" fn remember_closed_output() {
     #[cfg(unix)]
     // SAFETY: reads the flags of a file descriptor, which may be closed.

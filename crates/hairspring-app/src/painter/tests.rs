@@ -58,7 +58,7 @@ fn a_snapshot_that_arrives_with_a_finished_picture_wakes_the_window() {
     let (ask, asked) = channel();
     let ask = std::sync::Mutex::new(ask);
     ctx.set_request_repaint_callback(move |_| _ = ask.lock().unwrap().send(()));
-    // A context asks for its first frames by itself, and then only for what is new.
+    // egui requests a repaint after each of its first frames. These requests are not what is tested.
     let settle = || {
         (0..3).for_each(|_| _ = ctx.run_ui(egui::RawInput::default(), |_| ()));
         while asked.try_recv().is_ok() {}

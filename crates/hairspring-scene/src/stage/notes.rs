@@ -9,10 +9,11 @@ use hairspring::{collide::ColliderShape, simulation::VolumeReport};
 /// and sheets only.
 const THIN_HULL: f32 = 5e-3;
 
-/// Radius of a rod or ball, and half thickness of a box, below which hair may pass through it, over the length of a segment
-/// [1]. At 0.0064, a rod loses 2 to 5 of 60 strands, and at 0.01 none. For a box it is the depth that the contact of segments
-/// permits.
+/// Radius of a rod or ball below which hair may pass through it, over the length of a segment [1]. Found by trial.
 const THIN_ROD: f32 = 0.0075;
+
+/// Half thickness of a box below which hair may pass through it, over the length of a segment [1]: the depth that the contact
+/// of segments permits.
 const THIN_BOX: f32 = 0.015;
 
 /// Depth of the shallowest root in a collider from which on it is reported [m]. Roots lie less deep in a shape that stands
@@ -25,8 +26,8 @@ const MUCH_COARSER: f32 = 1.5;
 
 impl Stage {
     /// Returns a sentence for each thing that cannot be as the scene asks: a collision mesh that is too thin for its
-    /// distance field, thin rods, boxes and hulls, hair that starts inside colliders, colliders around all roots, more guides than asked for,
-    /// and a volume whose cells are enlarged.
+    /// distance field, thin rods, boxes and hulls, hair that starts inside colliders, colliders around all roots, more
+    /// guides than asked for, and a volume whose cells are enlarged.
     /// It describes the current state, so it is called before the first step.
     pub fn notes(&self) -> Vec<String> {
         let thin = self.thin_mesh().map(|thin| thin.to_string());

@@ -293,8 +293,8 @@ fn elastic(material: &Material, scale: StrandScale, points: &[Vec3], solver: &So
 }
 
 /// Total turn of a strand above which the rod replaces the curvature model [rad]: half a turn. The curvature model's force
-/// neglects its effect on the frames farther along the strand, so curled hair gains energy. Of 224 waves that fall from
-/// their authored shape, some whirl at 1 m/s for ever from 0.9 turns on, and without damping from 0.54 turns on.
+/// neglects its effect on the frames farther along the strand, so curled hair gains energy. Without damping, some waves
+/// above this limit whirl for ever after they fall from their authored shape.
 const COILED: f32 = std::f32::consts::PI;
 
 /// Sum of the turns at a strand's joints [rad].

@@ -33,8 +33,8 @@ use glam::Vec3;
 /// points hold the segment, and a head with segments of a centimeter is a smooth body.
 const SAG: f32 = 0.015;
 
-/// Permitted depth in a thin rod, over its radius [1]. In thin boxes it is not limited: at half of half the thickness, a plate
-/// of 1 mm that is dragged through segments of 27 mm throws hair at 280 m/s.
+/// Permitted depth in a thin rod, over its radius [1]. It does not apply to thin boxes: with the same limit, a plate of 1 mm
+/// that is dragged through segments of 27 mm throws hair.
 const SHARE_OF_ROD: f32 = 0.5;
 
 /// Place closest to the inner end whose depth the outer end corrects in full, as a fraction of the segment

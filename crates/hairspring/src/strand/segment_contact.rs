@@ -35,11 +35,10 @@ const STICK: f32 = 1.5;
 /// Rate at which the solve closes the gap of a segment inside an edge of a thick box at rest [1/s]: the depth decreases to 1/e within 42
 /// ms.
 ///
-/// The gap is the distance across segment and edge. Where the segment is nearly parallel to a face, that is many times the
-/// depth that begins a contact (see `segment`), and closed within a substep it would throw the segment off the edge, again
-/// and again. Found by trial with 2,560 strands near boxes, as in the test of curled hair over edges: closed within a
-/// substep, 24, 76 and 195 of them never came to rest at 4, 8 and 16 substeps; at this rate 2, 3 and 5, and at half of it
-/// 1, 2 and 4. The idea is the soft contact of Box2D v3.
+/// The gap is measured across segment and edge. Where the segment is nearly parallel to a face, it is many times the depth
+/// that begins a contact (see `segment`). If the solve closed it within one substep, it would throw the segment off the edge,
+/// again and again. Found by trial with curled hair over boxes; 12 and 48 are as good. The idea is the soft contact of Box2D
+/// v3.
 const EDGE_RATE: f32 = 24.0;
 
 /// Speed below which an edge is at rest [m/s].
@@ -90,7 +89,7 @@ pub fn assemble_segment_contact<S: Simd, const B: usize>(
     let m_h2 = load(simd, &tile.rest[outer][rest::MASS]) * (1.0 / (step.h * step.h));
     let shut = force.simd_gt(0.0) & force.simd_gt(gap * m_h2);
     let force = shut.select(force, zero);
-    // An edge that moves, or in refined substeps, may be past the segment before a slow correction ends.
+    // A moving edge could pass the segment before a slow correction ends. Refined substeps are used near moving edges.
     let slow = if step.relaxation < 1.0 { 1.0 } else { (EDGE_RATE * step.h).min(1.0) };
     let rests = at_edge & carried.dot(carried).simd_lt((RESTS * step.h).powi(2));
     let gap = rests.select(relaxed_gap(gap, normal.dot(carried), slow), gap);
