@@ -216,7 +216,7 @@ fn skin(body: &PosedBody, p: Vec3, size: f32) -> Option<(Vec3, Vec3)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hairspring::body::Mesh;
+    use hairspring::{body::Mesh, math::angle_between};
     use hairspring_scene::builtin::Hand;
 
     const LENGTH: f32 = Hand::LENGTH;
@@ -262,7 +262,7 @@ mod tests {
             let now = pushing.pulled.now;
             let way = now.translation.distance(last.translation);
             assert!(way < FASTEST_STROKE * STEP * 1.001, "step {step}: {way} m");
-            let turn = now.rotation.angle_between(last.rotation);
+            let turn = angle_between(now.rotation, last.rotation);
             assert!(turn * 0.7 * LENGTH < FASTEST * STEP, "step {step}: {turn} rad");
             let off = now.translation.length() - 0.09;
             assert!(off > 0.01, "step {step}: its middle is {off} m off the skin");

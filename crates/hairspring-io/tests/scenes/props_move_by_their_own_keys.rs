@@ -4,6 +4,7 @@
 
 use crate::scenes::{folder, message, read};
 use glam::Vec3;
+use hairspring::math::angle_between;
 use hairspring_scene::stage::Stage;
 
 /// A head with hair, and above it a lid with hair of its own and an attached ball. The lid is lifted by 2 m
@@ -92,7 +93,7 @@ fn a_prop_rides_on_the_joint_that_it_names() {
             }
             let root = stage.carried(Some("root"));
             turned =
-                turned.max(root.rotation.angle_between(glam::Quat::IDENTITY) + root.translation.length());
+                turned.max(angle_between(root.rotation, glam::Quat::IDENTITY) + root.translation.length());
             let lifted =
                 stage.carried(Some("lid")).transform_point(Vec3::ZERO) - root.transform_point(Vec3::ZERO);
             // Its keys move it in the space of the joint.
@@ -135,8 +136,8 @@ fn a_prop_rides_on_the_head_of_the_built_in_scene() {
     for _ in 0..60 {
         stage.step(hairspring_test::FRAME);
         let [head, hat] = ["head", "hat"].map(|name| stage.carried(Some(name)));
-        turned = turned.max(head.rotation.angle_between(glam::Quat::IDENTITY));
-        let off = hat.translation.distance(head.translation) + hat.rotation.angle_between(head.rotation);
+        turned = turned.max(angle_between(head.rotation, glam::Quat::IDENTITY));
+        let off = hat.translation.distance(head.translation) + angle_between(hat.rotation, head.rotation);
         assert!(off < 1e-3, "the hat leaves the head by {off}");
     }
     assert!(turned > 0.05, "the head turns by {turned}");

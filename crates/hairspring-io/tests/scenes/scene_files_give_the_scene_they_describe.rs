@@ -9,6 +9,7 @@ use hairspring::{
     air::{Flow, Turbulence, WindOcclusion, WindSource},
     body::{Body, Clip},
     forces::{Manipulator, comb::Comb, tie::Tie},
+    math::angle_between,
     settings::{Neighbours, Volume, VolumeMethod},
 };
 use hairspring_io::Loaded;
@@ -262,7 +263,7 @@ fn sintels_head_follows_a_walk_and_a_dab() {
         assert_eq!(scene.collision.unwrap().joints, body.joints);
         let (mut tilt, mut away) = (0.0f32, 0.0f32);
         for sample in &clip.samples {
-            tilt = tilt.max(sample.rotation.angle_between(glam::Quat::IDENTITY).to_degrees());
+            tilt = tilt.max(angle_between(sample.rotation, glam::Quat::IDENTITY).to_degrees());
             away = away.max(sample.to_affine().transform_point3(Vec3::Y * 1.45).distance(Vec3::Y * 1.45));
         }
         println!("{motion}: turns up to {tilt:.0} degrees, moves up to {away:.2} m");

@@ -1,4 +1,4 @@
-//! Rigid transforms, and interpolation between keys in time.
+//! Rigid transforms, angles between rotations, and interpolation between keys in time.
 //!
 //! # Example
 //! ```
@@ -11,10 +11,12 @@
 //! assert!((turn * shift).transform_point(Vec3::ZERO).distance(Vec3::Y) < 1e-6);
 //! ```
 
+mod angle_between;
 mod interpolate;
 mod nearer_start;
 mod rigid_transform;
 
+pub use angle_between::angle_between;
 pub use interpolate::find_keys;
 pub(crate) use nearer_start::nearer_start;
 pub use rigid_transform::RigidTransform;

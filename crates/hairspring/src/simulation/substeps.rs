@@ -23,7 +23,7 @@ use super::{
 use crate::parallel::prelude::*;
 use crate::{
     collide::{ColliderShape, MovingCollider},
-    math::RigidTransform,
+    math::{RigidTransform, angle_between},
 };
 
 /// Largest motion of a body in a substep, over its half thickness [1]. A strand in contact then stays on the
@@ -72,7 +72,7 @@ impl Simulation {
             let end = input.anchor.inverse() * collider.end;
             let (center, radius) = collider.shape.bounds();
             let [a, b] = [start, end].map(|pose| pose.transform_point(center));
-            let turn = start.rotation.angle_between(end.rotation);
+            let turn = angle_between(start.rotation, end.rotation);
             let path = a.distance(b) + turn * radius;
             let searched = matches!(collider.shape, ColliderShape::Field(_) | ColliderShape::Sheet(_));
             let slow = if searched { SLOW * radius } else { 0.0 };

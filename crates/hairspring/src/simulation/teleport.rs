@@ -14,7 +14,7 @@ use super::{Simulation, StepInput};
 use crate::parallel::prelude::*;
 use crate::{
     body::is_teleport,
-    math::RigidTransform,
+    math::{RigidTransform, angle_between},
     simd::lanes::Row,
     strand::tile::{Elastic, history, state},
 };
@@ -72,7 +72,7 @@ impl Simulation {
         let turned = motion.rotation.to_scaled_axis();
         let expected = Quat::from_scaled_axis(self.state.motion.spin * input.dt);
         let off = (moved - self.state.motion.velocity * input.dt).length();
-        let turned_off = motion.rotation.angle_between(expected);
+        let turned_off = angle_between(motion.rotation, expected);
         let jumped = is_teleport(off, turned_off, solver.teleport_distance, f64::from(input.dt));
         // The next frame is compared with the motion of a teleport, too. After a single jump, hair is thus
         // moved rigidly once more, by as little as the head then moves. If it was the start of a fast motion,
