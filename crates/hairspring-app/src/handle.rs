@@ -218,8 +218,12 @@ mod tests {
             instruction_set: String::new(),
             subject: None,
         };
-        let camera =
-            Camera { position: Vec3::new(0.0, 1.5, 2.0), target: Vec3::new(0.0, 1.5, 0.0), fov: 30.0 };
+        let camera = Camera {
+            position: Vec3::new(0.0, 1.5, 2.0),
+            target: Vec3::new(0.0, 1.5, 0.0),
+            fov: 30.0,
+            ..Camera::default()
+        };
         (document, StageSnapshot::new(Arc::new(still)), Lens::new(&camera, 1.5))
     }
 

@@ -42,7 +42,12 @@ impl Orbit {
     pub fn camera(&self) -> Camera {
         let (sin, cos) = self.rise.sin_cos();
         let back = Vec3::new(self.turn.sin() * cos, sin, self.turn.cos() * cos);
-        Camera { position: self.target + back * self.distance, target: self.target, fov: self.fov }
+        Camera {
+            position: self.target + back * self.distance,
+            target: self.target,
+            fov: self.fov,
+            ..Camera::default()
+        }
     }
 
     /// The camera for a picture with this aspect ratio.

@@ -17,7 +17,7 @@ use hairspring::{
 use hairspring_io::Strands;
 use hairspring_scene::{
     HairLook, Picture,
-    stage::{FrameReport, Picked, Stage, StrandFigures, Value},
+    stage::{FrameReport, Picked, Stage, StrandFigures, Subject, Value},
 };
 use hairspring_view::{Background, Frame, Ground, HairDraw, Lighting, MeshDraw, Quality};
 use std::{sync::Arc, time::Duration};
@@ -32,8 +32,8 @@ pub struct Still {
     pub counts: [usize; 4],
     /// Name of the instruction set.
     pub instruction_set: String,
-    /// The box (min, max) of hair and head over the whole motion [m]; `None` if no point is finite.
-    pub subject: Option<(Vec3, Vec3)>,
+    /// Hair and head over the whole motion; `None` if no point is finite.
+    pub subject: Option<Subject>,
 }
 
 /// The static data of one groom.
@@ -84,7 +84,7 @@ impl Still {
             body: stage.body().map(|b| mesh(b.mesh)),
             counts: [simulated, strands, points, all],
             instruction_set: stage.instruction_set(),
-            subject: stage.subject_bounds(),
+            subject: stage.subject(),
         }
     }
 }

@@ -100,6 +100,15 @@ pub fn background(text: &str) -> Result<Background, String> {
     Background::ALL.into_iter().find(|b| b.name() == text).ok_or(format!("expected one of {names}"))
 }
 
+/// Parses `yes` or `no`.
+pub fn yes_or_no(text: &str) -> Result<bool, String> {
+    match text {
+        "yes" => Ok(true),
+        "no" => Ok(false),
+        _ => Err("expected yes or no".into()),
+    }
+}
+
 /// Parses the duration of a pre-roll, 0 to 60 [s].
 pub fn preroll(text: &str) -> Result<f32, String> {
     let number = text.parse::<f32>().ok().filter(|n| (0.0..=60.0).contains(n));

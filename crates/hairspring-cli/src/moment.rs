@@ -39,7 +39,7 @@ impl Moment {
             camera: Camera {
                 position: self.camera.position.lerp(now.camera.position, share),
                 target: self.camera.target.lerp(now.camera.target, share),
-                fov: now.camera.fov,
+                ..now.camera
             },
             hair: self.hair.iter().zip(now.hair).map(|(a, b)| between(a, b.points)).collect(),
             body: body.map(|((p, n), now)| (between(p, now.positions), between(n, now.normals))),

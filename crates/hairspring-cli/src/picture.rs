@@ -3,7 +3,10 @@
 use crate::{fault::Fault, frames, moment::Moment};
 use clap::Args;
 use glam::{Quat, Vec3};
-use hairspring_scene::{Background, Camera, Picture, stage::Stage};
+use hairspring_scene::{
+    Background, Camera, Picture,
+    stage::{Stage, Subject, SubjectPath},
+};
 use hairspring_view::{
     Frame, Ground, HairDraw, Image, Layers, Lighting, LinearImage, MeshDraw, Quality, Renderer, Timings,
     frame_camera,
@@ -25,6 +28,11 @@ pub struct View {
     /// Point that the camera looks at [m]
     #[arg(long, value_name = "X,Y,Z", value_parser = frames::point, allow_hyphen_values = true)]
     pub target: Option<Vec3>,
+
+    /// Whether the camera moves along with hair that travels: yes or no [default: from the scene; yes for a camera that
+    /// is not given, if the hair would be small otherwise]
+    #[arg(long, value_name = "YES|NO", value_parser = frames::yes_or_no)]
+    pub follow: Option<bool>,
 
     /// Vertical field of view [degrees], a whole number from 1 to 170 [default: from the scene, otherwise 30]
     #[arg(long, value_name = "DEGREES", value_parser = clap::value_parser!(u8).range(1..=170))]
@@ -95,9 +103,12 @@ pub enum Drawn<'a> {
 /// A camera, its lights and a renderer.
 pub struct Studio {
     painter: Painter,
-    /// The initial camera and the current camera.
+    /// The camera at the start.
     start: Camera,
-    camera: Camera,
+    /// The part of a full turn about its target that it has made, see [`Studio::turn`].
+    turned: f32,
+    /// The path that it moves along; empty for a camera that does not follow the hair.
+    path: SubjectPath,
     width_scale: f32,
     picture: Picture,
     format: Format,
@@ -126,10 +137,15 @@ impl Studio {
     /// interpolates the follow hairs.
     pub fn new(view: &View, stage: &mut Stage, setup: Setup) -> Result<Self, Fault> {
         let (width, height) = view.size;
-        let mut camera = stage
-            .scene()
-            .camera
-            .unwrap_or_else(|| overview(stage, width as f32 / height as f32, setup.turned));
+        let own = stage.scene().camera;
+        let follows = view.follow.or(own.map(|camera| camera.follow));
+        let needed = own.is_none() || follows == Some(true);
+        let subject = needed.then(|| stage.subject()).flatten();
+        let travels = subject.as_ref().is_some_and(Subject::travels);
+        let placed = view.camera.is_some() || view.target.is_some();
+        let follow = follows.unwrap_or(travels && !placed);
+        let aspect = width as f32 / height as f32;
+        let mut camera = own.unwrap_or_else(|| overview(subject.as_ref(), aspect, (setup.turned, follow)));
         camera.position = view.camera.unwrap_or(camera.position);
         camera.target = view.target.unwrap_or(camera.target);
         camera.fov = view.fov.map_or(camera.fov, f32::from);
@@ -146,7 +162,8 @@ impl Studio {
         let mut studio = Self {
             painter: Painter::Cpu(Box::new(Renderer::new(width, height))),
             start: camera,
-            camera,
+            turned: 0.0,
+            path: subject.filter(|_| follow).map(|subject| subject.path).unwrap_or_default(),
             width_scale,
             picture,
             format: setup.format,
@@ -207,20 +224,27 @@ impl Studio {
 
     /// Takes over the camera and the width of hairs of `other`.
     pub fn look_like(&mut self, other: &Self) {
-        (self.start, self.camera, self.width_scale) = (other.start, other.camera, other.width_scale);
+        (self.start, self.turned, self.width_scale) = (other.start, other.turned, other.width_scale);
+        self.path.clone_from(&other.path);
     }
 
     /// Rotates the camera around the vertical axis through its target. `share` is a fraction of a full turn
     /// from the initial position, counterclockwise as seen from above.
     pub fn turn(&mut self, share: f32) {
-        let turn = Quat::from_rotation_y(share * std::f32::consts::TAU);
-        let back = self.start.position - self.start.target;
-        self.camera.position = self.start.target + turn * back;
+        self.turned = share;
+    }
+
+    /// The camera for the current state of the stage.
+    fn camera(&self, stage: &Stage) -> Camera {
+        let turn = Quat::from_rotation_y(self.turned * std::f32::consts::TAU);
+        let back = turn * (self.start.position - self.start.target);
+        let target = self.start.target + self.path.offset(stage.time());
+        Camera { position: target + back, target, ..self.start }
     }
 
     /// Draws the current state of the stage.
     pub fn draw(&mut self, stage: &Stage) -> Result<(Drawn<'_>, Timings), Fault> {
-        let camera = self.camera;
+        let camera = self.camera(stage);
         let current: Vec<HairDraw> =
             stage.strands().map(|s| HairDraw { width_scale: self.width_scale, ..HairDraw::of(s) }).collect();
         let body = stage.body().map(MeshDraw::of);
@@ -278,7 +302,8 @@ impl Studio {
     /// Passes over a frame that is not drawn: the motion of the next one begins here.
     pub fn pass(&mut self, stage: &Stage) {
         if self.format == Format::Layers || self.picture.shutter > 0.0 {
-            self.last.get_or_insert_default().fill(stage, self.camera);
+            let camera = self.camera(stage);
+            self.last.get_or_insert_default().fill(stage, camera);
         }
     }
 }
@@ -350,9 +375,11 @@ impl Card {
     }
 }
 
-/// A camera that shows the subject over its whole motion, and from all sides if it will be turned.
-fn overview(stage: &Stage, aspect: f32, turned: bool) -> Camera {
-    let (mut low, mut high) = stage.subject_bounds().unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
+/// A camera that shows the subject over its whole motion: from all sides if it will be turned, and along its path if it
+/// follows.
+fn overview(subject: Option<&Subject>, aspect: f32, (turned, follow): (bool, bool)) -> Camera {
+    let bounds = subject.map(|subject| if follow { subject.moving_bounds } else { subject.bounds });
+    let (mut low, mut high) = bounds.unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
     if turned {
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
         let reach = half.x.hypot(half.z);

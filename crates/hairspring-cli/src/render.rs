@@ -266,7 +266,8 @@ impl Kind {
 
 /// The options that change pictures, for their manifest.
 fn all_options(options: &Options, range: FrameRange) -> Vec<(&'static str, Option<String>)> {
-    let View { size, camera, target, fov, background, light_angle, shutter, hair_width, gpu } = &options.view;
+    let View { size, camera, target, follow, fov, background, light_angle, shutter, hair_width, gpu } =
+        &options.view;
     let point = |p: glam::Vec3| format!("{},{},{}", p.x, p.y, p.z);
     let set = |flag: bool| flag.then(|| "set".to_owned());
     let mut all = options.input.options().to_vec();
@@ -275,6 +276,7 @@ fn all_options(options: &Options, range: FrameRange) -> Vec<(&'static str, Optio
         ("size", Some(format!("{}x{}", size.0, size.1))),
         ("camera", camera.map(point)),
         ("target", target.map(point)),
+        ("follow", follow.map(|follow| if follow { "yes" } else { "no" }.into())),
         ("fov", fov.map(|fov| fov.to_string())),
         ("background", background.map(|background| background.name().to_owned())),
         ("light-angle", light_angle.map(|angle| angle.to_string())),

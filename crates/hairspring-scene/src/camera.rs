@@ -17,5 +17,8 @@ define_settings! {
         /// Vertical field of view: small for a distant portrait, large for a whole room. The default is that of a
         /// portrait lens.
         fov: f32 = 30.0, ["degrees"], {1 to 170};
+        /// Moves position and target along with the hair, so that hair that travels stays in the picture at the same size. They
+        /// are where the camera is at the start. Steps and nods are averaged over about a second.
+        follow: bool = false, "none", {switch};
     }
 }

@@ -68,7 +68,11 @@ pub fn frame_camera(bounds: (Vec3, Vec3), aspect: f32) -> Camera {
     if !(low.is_finite() && high.is_finite() && aspect > 0.0) {
         return default;
     }
-    let view = View::new(&Camera { position: target + back, target, fov: default.fov }, 1000, 1000);
+    let view = View::new(
+        &Camera { position: target + back, target, fov: default.fov, ..Camera::default() },
+        1000,
+        1000,
+    );
     // The distance from which every corner is inside the picture, with a margin of 8 %.
     let half = (0.5 * default.fov.to_radians()).tan() / 1.08;
     let mut distance = 0.0f32;
@@ -78,5 +82,10 @@ pub fn frame_camera(bounds: (Vec3, Vec3), aspect: f32) -> Camera {
         let across = corner.dot(view.right).abs() / aspect.min(1e3);
         distance = distance.max(toward + across.max(corner.dot(view.up).abs()) / half);
     }
-    Camera { position: target + back * distance.max(4.0 * NEAR), target, fov: default.fov }
+    Camera {
+        position: target + back * distance.max(4.0 * NEAR),
+        target,
+        fov: default.fov,
+        ..Camera::default()
+    }
 }

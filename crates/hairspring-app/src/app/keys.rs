@@ -46,12 +46,13 @@ impl App {
         if pressed(Modifiers::NONE, Key::F) {
             self.view.orbit = None;
         }
-        for (key, open) in [
+        for (key, on) in [
+            (Key::L, &mut self.view.follow),
             (Key::G, &mut self.open.graphs),
             (Key::P, &mut self.open.presets),
             (Key::Questionmark, &mut self.open.help),
         ] {
-            *open ^= pressed(Modifiers::NONE, key);
+            *on ^= pressed(Modifiers::NONE, key);
         }
         if pressed(Modifiers::NONE, Key::Tab) {
             self.open.panels ^= true;

@@ -346,8 +346,7 @@ impl eframe::App for App {
                 egui::Panel::bottom("graphs").show(ui, |ui| self.history.show(ui));
             }
             egui::Panel::right("parameters").default_size(360.0).show(ui, |ui| {
-                let camera = self.view.orbit.map(|orbit| orbit.camera());
-                parameters::show(ui, &self.session, &mut self.filter, camera, &mut actions);
+                parameters::show(ui, &self.session, &mut self.filter, self.view.camera(), &mut actions);
             });
         }
         egui::CentralPanel::no_frame().show(ui, |ui| {

@@ -33,10 +33,11 @@ impl App {
         self.painters.truncate(count);
         let width = whole.width() / count as f32;
         let aspect = width / whole.height().max(1.0);
-        self.view.follow_camera(&self.session, snapshot, aspect);
+        self.view.adopt_camera(&self.session, snapshot, aspect);
         if self.view.orbit.is_none() {
             self.view.frame(&self.session, snapshot, aspect);
         }
+        self.view.follow_subject(snapshot);
         let guides = self.session.shown() == Some(Value::Guide);
         self.caption = 0.0;
         for (k, stage) in snapshot.stages.iter().enumerate() {

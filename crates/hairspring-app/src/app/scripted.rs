@@ -136,6 +136,7 @@ impl App {
         let place = match name {
             "compare" => return self.act(Action::Compare(on)),
             "second" => return self.act(Action::Second(on)),
+            "follow" => &mut self.view.follow,
             "graphs" => &mut self.open.graphs,
             "presets" => &mut self.open.presets,
             "help" => &mut self.open.help,

@@ -4,12 +4,13 @@ use crate::view::Tool;
 use eframe::egui;
 
 /// Keys and their functions.
-const KEYS: [(&str, &str); 16] = [
+const KEYS: [(&str, &str); 17] = [
     ("Space", "play or pause"),
     ("Right", "the next frame, while paused"),
     ("Left", "the cached frame before, while paused"),
     ("R", "reset to time 0"),
     ("F", "frame hair and head"),
+    ("L", "let the camera move along with the hair, or not"),
     ("C", "compare two settings on the same motion"),
     ("G", "graphs"),
     ("P", "presets"),

@@ -109,6 +109,7 @@ fn take_view(ui: &mut Ui, camera: Option<Camera>, actions: &mut Vec<Action>) {
             (key.field("position"), Some(place(camera.position))),
             (key.field("target"), Some(place(camera.target))),
             (key.field("fov"), Some(tidy(camera.fov).into())),
+            (key.field("follow"), camera.follow.then(|| true.into())),
         ]));
         actions.push(Action::Rest);
     }

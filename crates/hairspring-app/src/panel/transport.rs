@@ -109,6 +109,7 @@ pub fn tools(ui: &mut Ui, session: &Session, view: &mut View, actions: &mut Vec<
                 }
             });
         });
+        ui.checkbox(&mut view.follow, "Follow").on_hover_text("L: the camera moves along with the hair");
         let mut compare = session.second().is_some();
         if ui
             .checkbox(&mut compare, "Compare")

@@ -128,6 +128,7 @@ pub const ALL: &[Parameter] = parameters! {
         Scene "camera.position", "Camera position", Kind::Vector { reach: 10.0 };
         Scene "camera.target", "Camera target", Kind::Vector { reach: 10.0 };
         Scene "camera.fov", "Field of view", number(5.0, 90.0);
+        Scene "camera.follow", "Follow hair", Kind::Switch;
         Scene "picture.light_angle", "Light angle", number(-180.0, 180.0);
         Scene "picture.background", "Background", Kind::Choice;
         Scene "picture.backdrop_center", "Backdrop center", Kind::Color;

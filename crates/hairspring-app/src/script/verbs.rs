@@ -170,6 +170,9 @@ pub const VERBS: &[Verb] = &[
     verb("second", "on|off", "on", "selects the second scene for changes, or the first", |r| {
         r.switch("second")
     }),
+    verb("follow", "on|off", "on", "lets the camera move along with the hair, or not", |r| {
+        r.switch("follow")
+    }),
     verb("graphs", "on|off", "on", "shows or hides the graphs", |r| r.switch("graphs")),
     verb("presets", "on|off", "on", "shows or hides the presets", |r| r.switch("presets")),
     verb("help", "on|off", "on", "shows or hides the list of keys", |r| r.switch("help")),

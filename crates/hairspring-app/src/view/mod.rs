@@ -13,7 +13,7 @@ use crate::{
 };
 use eframe::egui;
 use glam::Vec3;
-use hairspring_scene::builtin;
+use hairspring_scene::{Camera, builtin, stage::Subject};
 use hairspring_view::{Quality, frame_camera};
 use std::path::PathBuf;
 use touch::{Drag, Held};
@@ -63,6 +63,10 @@ impl Default for Overlays {
 pub struct View {
     /// Camera; `None` until there is something to look at.
     pub orbit: Option<Orbit>,
+    /// Whether the camera moves along with the hair.
+    pub follow: bool,
+    /// How far it has moved along [m].
+    followed: Vec3,
     /// The current tool.
     pub tool: Tool,
     /// Radius of the pushed sphere and of a grab [m].
@@ -99,6 +103,8 @@ impl Default for View {
     fn default() -> Self {
         Self {
             orbit: None,
+            follow: false,
+            followed: Vec3::ZERO,
             tool: Tool::default(),
             reach: 0.02,
             length: builtin::Hand::LENGTH,
@@ -140,13 +146,16 @@ impl View {
 
     /// Sets the camera for a newly opened scene, from its file or so that hair and head stay visible, and when
     /// the scene's camera is changed.
-    pub fn follow_camera(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
+    pub fn adopt_camera(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
         // A snapshot of the previous scene does not belong to the opened one.
         if self.framed != snapshot.scene && snapshot.scene >= session.begun() {
             self.framed = snapshot.scene;
             let file = session.document().file().map(Into::into);
             // If an edit restarts the same scene, the camera stays.
             if self.orbit.is_none() || self.file != file || self.forget {
+                let own = session.document().settings().camera;
+                let travels = || subject(snapshot).is_some_and(Subject::travels);
+                self.follow = own.map_or_else(travels, |camera| camera.follow);
                 self.frame(session, snapshot, aspect);
                 self.scene_camera = scene_camera(session);
             }
@@ -157,19 +166,42 @@ impl View {
             if let Some(camera) =
                 session.edited().settings().camera.filter(|_| current.0 == self.scene_camera.0)
             {
-                self.orbit = Some(Orbit::new(&camera));
+                self.set(&camera);
+                self.follow = camera.follow;
             }
             self.scene_camera = current;
         }
     }
 
-    /// Frames hair and head over the whole motion.
+    /// Frames hair and head over the whole motion: along the path of the hair if the camera follows it.
     pub fn frame(&mut self, session: &Session, snapshot: &Snapshot, aspect: f32) {
         let own = session.document().settings().camera;
-        let bounds = snapshot.stages.first().and_then(|stage| stage.still.subject);
+        let bounds = subject(snapshot).map(|s| if self.follow { s.moving_bounds } else { s.bounds });
         let bounds = bounds.unwrap_or((Vec3::NEG_ONE, Vec3::ONE));
-        let camera = own.unwrap_or_else(|| frame_camera(bounds, aspect.max(NARROW)));
-        self.orbit = Some(Orbit::new(&camera));
+        self.set(&own.unwrap_or_else(|| frame_camera(bounds, aspect.max(NARROW))));
+    }
+
+    /// Takes over a camera of a scene, which is where it is at the start.
+    fn set(&mut self, camera: &Camera) {
+        (self.orbit, self.followed) = (Some(Orbit::new(camera)), Vec3::ZERO);
+    }
+
+    /// Moves the camera along with the hair, if it follows.
+    pub fn follow_subject(&mut self, snapshot: &Snapshot) {
+        let time = snapshot.stages.first().map_or(0.0, |stage| stage.time);
+        let offset = subject(snapshot).map_or(Vec3::ZERO, |subject| subject.path.offset(time));
+        if let (true, Some(orbit)) = (self.follow, &mut self.orbit) {
+            orbit.target += offset - self.followed;
+        }
+        self.followed = offset;
+    }
+
+    /// The view as a camera of the scene.
+    pub fn camera(&self) -> Option<Camera> {
+        let camera = self.orbit?.camera();
+        let back = if self.follow { self.followed } else { Vec3::ZERO };
+        let [position, target] = [camera.position, camera.target].map(|p| p - back);
+        Some(Camera { position, target, follow: self.follow, ..camera })
     }
 
     /// The lens of the picture at `rect`.
@@ -177,6 +209,11 @@ impl View {
         let aspect = rect.width() / rect.height().max(1.0);
         Some(Lens::new(&self.orbit?.seen(aspect), aspect))
     }
+}
+
+/// The subject of the left scene.
+fn subject(snapshot: &Snapshot) -> Option<&Subject> {
+    snapshot.stages.first()?.still.subject.as_ref()
 }
 
 /// Which of two scenes is edited, and the camera in its text.
@@ -199,7 +236,7 @@ mod tests {
             session.latest()
         });
         let (snapshot, mut view) = (snapshot.unwrap(), View::default());
-        view.follow_camera(&session, &snapshot, 1.5);
+        view.adopt_camera(&session, &snapshot, 1.5);
         let turned = Orbit { turn: 1.0, ..view.orbit.unwrap() };
         view.orbit = Some(turned);
         let put = |session: &mut Session, name: &str, value: toml_edit::Value| {
@@ -207,15 +244,15 @@ mod tests {
             session.act(Action::Parameter(parameter, Some(value))).unwrap();
         };
         put(&mut session, "gravity", [0.0, -1.0, 0.0].into_iter().collect());
-        view.follow_camera(&session, &snapshot, 1.5);
+        view.adopt_camera(&session, &snapshot, 1.5);
         assert_eq!(view.orbit, Some(turned), "the camera did not change");
         put(&mut session, "camera.fov", 40.0.into());
-        view.follow_camera(&session, &snapshot, 1.5);
+        view.adopt_camera(&session, &snapshot, 1.5);
         let own = session.document().settings().camera.unwrap();
         assert_eq!((view.orbit.unwrap().fov, view.orbit), (40.0, Some(Orbit::new(&own))));
         view.orbit = Some(turned);
         session.act(Action::Undo).unwrap();
-        view.follow_camera(&session, &snapshot, 1.5);
+        view.adopt_camera(&session, &snapshot, 1.5);
         assert_eq!(view.orbit.unwrap().fov, session.document().settings().camera.unwrap().fov);
     }
 
@@ -239,9 +276,9 @@ mod tests {
         // Before the window has drawn the first scene.
         session.act(Action::New(head(5.0))).unwrap();
         view.forget = true;
-        view.follow_camera(&session, &first, 1.5);
+        view.adopt_camera(&session, &first, 1.5);
         assert!(view.forget, "what was opened is still to come");
-        view.follow_camera(&session, &seen(&session, 2), 1.5);
+        view.adopt_camera(&session, &seen(&session, 2), 1.5);
         assert_eq!(view.orbit.unwrap().target.y, 5.0);
     }
 }

@@ -1,8 +1,10 @@
-//! Settings that are valid but probably mistakes: values in another unit than that of the field, and a tie together with
-//! strand contact.
+//! Settings that are valid but probably mistakes: values in another unit than that of the field, a tie together with
+//! strand contact, and a camera that is only partly placed.
 
 use super::file::SceneFile;
 use hairspring::forces::Manipulator;
+use hairspring_scene::Camera;
+use toml::Table;
 
 /// Length of grown hair above which it is reported [m]. Few people have longer hair.
 const LONG: f32 = 3.0;
@@ -37,6 +39,22 @@ pub(super) fn notes(scene: &SceneFile) -> Vec<String> {
         )
     });
     lengths.chain(materials).chain(gravity).chain(sheets).chain(held_open(scene)).collect()
+}
+
+/// Returns a note for a camera without a position or a target: the defaults suit the built-in head, which may be elsewhere than
+/// the hair of the scene. `text` is that of the scene.
+pub(super) fn half_placed(text: &str, scene: &SceneFile) -> Option<String> {
+    let written = text.parse::<Table>().ok()?;
+    let camera =
+        written.get("camera").and_then(|camera| camera.as_table()).filter(|_| scene.builtin.is_none())?;
+    let defaults = Camera::default();
+    let places = [("position", defaults.position), ("target", defaults.target)];
+    let (missing, place) = places.into_iter().find(|(key, _)| !camera.contains_key(*key))?;
+    Some(format!(
+        "[camera] has no `{missing}`, so it is {:?}, which suits the built-in head; write `position` and `target`, or leave \
+         [camera] out, and hair and head are framed automatically",
+        place.to_array()
+    ))
 }
 
 /// Returns a note for each of these settings in the material `name`.

@@ -79,6 +79,7 @@ pub fn read_scene_text(path: &Path, text: &str) -> Result<Loaded<Scene>> {
     reader.geometry(&file, &mut scene)?;
     reader.notes.extend(material::unused(&file));
     reader.notes.extend(implausible::notes(&file));
+    reader.notes.extend(implausible::half_placed(text, &file));
     reader.notes.extend(inactive::notes(text, &file, &scene));
     let Reader { repairs, notes, .. } = reader;
     Ok(Loaded { value: scene, format: Format::Scene, scale: 1.0, repairs, notes: load::plain(notes) })

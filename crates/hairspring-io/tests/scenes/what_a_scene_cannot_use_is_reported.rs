@@ -234,3 +234,22 @@ fn a_mesh_whose_vertices_are_all_at_one_place_is_refused() {
         assert!(error.ends_with(expected), "{error}");
     }
 }
+
+#[test]
+fn a_camera_that_is_only_partly_placed_is_reported() {
+    let folder = folder();
+    fs::write(folder.path().join("box.obj"), cube(false, Vec3::ZERO)).unwrap();
+    let body = format!("[body]\nfile = \"box.obj\"\nscale = 1.0\n{GROOM}");
+    let both = "position = [0.0, 0.0, 2.0]\ntarget = [0.0, 0.0, 0.0]\n";
+    for (scene, camera, missing) in [
+        (body.as_str(), "fov = 20.0\n", Some("position")),
+        (&body, "position = [0.0, 0.0, 2.0]\n", Some("target")),
+        (&body, both, None),
+        ("[builtin]\nstrands = 5\n", "fov = 20.0\n", None),
+    ] {
+        let loaded = read(folder.path(), &format!("{scene}[camera]\n{camera}")).unwrap();
+        let said = missing.map_or(0, |key| notes(&loaded.notes, &format!("[camera] has no `{key}`")));
+        assert_eq!(said, usize::from(missing.is_some()), "{camera}: {:?}", loaded.notes);
+        assert_eq!(notes(&loaded.notes, "[camera] has no"), said);
+    }
+}

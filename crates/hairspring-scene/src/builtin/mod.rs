@@ -103,5 +103,5 @@ pub fn settings(options: &BuiltinOptions) -> Scene {
 fn camera(style: Style) -> Camera {
     // A halo stands higher than falling hair.
     let (height, fov) = if style == Style::Coily { (-0.01, 21.0) } else { (-0.06, 18.0) };
-    Camera { position: vec3(0.60, 0.05, 1.28), target: vec3(0.0, height, -0.005), fov }
+    Camera { position: vec3(0.60, 0.05, 1.28), target: vec3(0.0, height, -0.005), fov, ..Camera::default() }
 }

@@ -21,7 +21,8 @@ mod rehearsal;
 mod rigid_parts;
 mod starts_inside;
 mod state;
-mod subject_bounds;
+mod subject;
+mod subject_path;
 mod surface;
 mod thickness;
 mod update_settings;
@@ -32,6 +33,8 @@ pub use check::StageError;
 pub use clock::FrameRate;
 pub use starts_inside::StartsInside;
 pub use state::StageState;
+pub use subject::Subject;
+pub use subject_path::SubjectPath;
 pub use thickness::ThinMesh;
 pub use values::{Picked, StrandFigures, Value};
 

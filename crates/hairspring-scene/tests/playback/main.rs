@@ -1,6 +1,7 @@
 //! Promises of scenes and their playback. Each file is one promise.
 
 mod builtin_head_is_sound;
+mod cameras_hold_the_subject;
 mod colliders_push_hair_out_at_the_start;
 mod cuts_in_a_clip_carry_hair_along;
 mod far_and_large_scenes_are_exact_or_refused;
@@ -14,6 +15,5 @@ mod props_and_limbs_collide_with_hair;
 mod scenes_made_by_code_are_checked_like_files;
 mod settings_change_during_playback;
 mod stages_return_to_a_state;
-mod subject_bounds_hold_the_motion;
 mod support;
 mod time_counts_frames;

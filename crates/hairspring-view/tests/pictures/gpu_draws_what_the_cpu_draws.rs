@@ -62,7 +62,8 @@ fn strand(from: Vec3, to: Vec3, wave: f32) -> Vec<Vec3> {
 
 fn close(hair: &[HairDraw<'static>]) -> Frame<'static> {
     let hair: &'static [HairDraw<'static>] = Box::leak(hair.to_vec().into_boxed_slice());
-    let camera = Camera { position: Vec3::new(0.0, 0.0, 0.5), target: Vec3::ZERO, fov: 26.0 };
+    let camera =
+        Camera { position: Vec3::new(0.0, 0.0, 0.5), target: Vec3::ZERO, fov: 26.0, ..Camera::default() };
     Frame { camera, ..crate::support::frame(hair, &[]) }
 }
 
@@ -153,7 +154,8 @@ fn slivers_have_no_speckles() {
     }
     let bodies = [crate::support::body(&mesh)];
     for (name, y) in [("pleats-low", 0.34), ("pleats", 0.37), ("pleats-high", 0.5)] {
-        let camera = Camera { position: far + Vec3::new(0.05, y, 0.5), target: far, fov: 26.0 };
+        let camera =
+            Camera { position: far + Vec3::new(0.05, y, 0.5), target: far, fov: 26.0, ..Camera::default() };
         compare_everywhere(
             &mut gpu,
             name,
@@ -178,8 +180,12 @@ fn the_ground_looks_the_same() {
     });
     let look = HairLook::from(HairColor::Brown);
     let hair = [HairDraw { width_scale: 4.0, ..crate::support::hair(&groom, &look) }];
-    let camera =
-        Camera { position: Vec3::new(0.3, 0.35, 1.2), target: Vec3::new(0.1, -0.12, 0.0), fov: 36.0 };
+    let camera = Camera {
+        position: Vec3::new(0.3, 0.35, 1.2),
+        target: Vec3::new(0.1, -0.12, 0.0),
+        fov: 36.0,
+        ..Camera::default()
+    };
     let card = Some(Vec3::new(0.5, 0.45, 0.4));
     for (height, color) in [(-0.12, None), (-0.11, card), (-0.05, card), (0.0, None)] {
         let ground = Some(Ground { height, color });
@@ -269,7 +275,8 @@ fn changed_arrays_are_uploaded_again() {
     let mut few = Few::new(&[strand(Vec3::NEG_X * 0.1, Vec3::X * 0.1, 0.03)], 4e-3);
     let close = |few: &Few, gpu: &mut GpuRenderer| {
         let hair = [few.draw()];
-        let camera = Camera { position: Vec3::new(0.0, 0.0, 0.5), target: Vec3::ZERO, fov: 26.0 };
+        let camera =
+            Camera { position: Vec3::new(0.0, 0.0, 0.5), target: Vec3::ZERO, fov: 26.0, ..Camera::default() };
         gpu.draw(&Frame { camera, ..crate::support::frame(&hair, &[]) }, 80, 60);
         gpu.read().unwrap()
     };

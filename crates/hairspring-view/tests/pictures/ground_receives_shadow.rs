@@ -19,7 +19,7 @@ fn draw(frame: &Frame) -> Image {
 
 /// A camera that looks at the origin from above, from the side of the lamps.
 fn above() -> Camera {
-    Camera { position: Vec3::new(0.0, 1.2, 1.6), target: Vec3::ZERO, fov: 40.0 }
+    Camera { position: Vec3::new(0.0, 1.2, 1.6), target: Vec3::ZERO, fov: 40.0, ..Camera::default() }
 }
 
 fn ground_at(height: f32) -> Option<Ground> {
@@ -108,7 +108,12 @@ fn a_shadow_has_a_soft_edge_on_all_sides() {
     let quality = hairspring_view::Quality { shadow_texels: 64, ..Default::default() };
     let middle = cast(Vec3::Y * 0.4);
     let background = Background { center: Vec3::splat(0.3), edge: Vec3::splat(0.3) };
-    let camera = Camera { position: middle + Vec3::new(0.0, 1.0, 0.01), target: middle, fov: 30.0 };
+    let camera = Camera {
+        position: middle + Vec3::new(0.0, 1.0, 0.01),
+        target: middle,
+        fov: 30.0,
+        ..Camera::default()
+    };
     let ground = ground_at(0.0);
     let image = draw(&Frame { camera, ground, quality, background, ..crate::support::frame(&[], &bodies) });
     let code = |x: u32, y: u32| i32::from(image.pixel(x, y)[1]);
@@ -125,7 +130,12 @@ fn distant_ground_fades_to_the_backdrop() {
     let roof = plate(0.4, 3.0);
     let bodies = [crate::support::body(&roof)];
     // The camera is low above the ground, with the horizon in the middle of the picture.
-    let camera = Camera { position: Vec3::new(0.0, 0.3, 1.2), target: Vec3::new(0.0, 0.3, 0.0), fov: 40.0 };
+    let camera = Camera {
+        position: Vec3::new(0.0, 0.3, 1.2),
+        target: Vec3::new(0.0, 0.3, 0.0),
+        fov: 40.0,
+        ..Camera::default()
+    };
     let frame = Frame { camera, ..crate::support::frame(&[], &bodies) };
     let ground = Some(Ground { height: -0.2, color: Some(Vec3::splat(0.6)) });
     let (without, with) = (draw(&frame), draw(&Frame { ground, ..frame }));

@@ -20,6 +20,7 @@ fn camera() -> Camera {
         position: Vec3::Z * distance,
         target: Vec3::ZERO,
         fov: 2.0 * (0.5 * SIDE as f32 * 1e-3 / distance).atan().to_degrees(),
+        ..Camera::default()
     }
 }
 

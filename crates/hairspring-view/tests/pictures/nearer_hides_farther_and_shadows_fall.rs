@@ -8,7 +8,7 @@ use hairspring_view::{Frame, HairDraw, Image, Light, Lighting, MeshDraw, Rendere
 const SIDE: u32 = 128;
 
 fn camera() -> Camera {
-    Camera { position: Vec3::Z, target: Vec3::ZERO, fov: 12.0 }
+    Camera { position: Vec3::Z, target: Vec3::ZERO, fov: 12.0, ..Camera::default() }
 }
 
 /// A curtain of `n` upright strands over 10 cm at depth `z`, shifted sideways by `x`.

@@ -199,9 +199,9 @@ pub const NO_BODY: MeshDraw<'static> = MeshDraw { positions: &[], normals: &[], 
 pub fn broken_cameras() -> [Camera; 4] {
     [
         Camera::default(),
-        Camera { position: Vec3::ZERO, target: Vec3::ZERO, fov: f32::NAN },
-        Camera { position: Vec3::NAN, target: Vec3::INFINITY, fov: -3.0 },
-        Camera { position: Vec3::Y * 0.1001, target: Vec3::ZERO, fov: 170.0 },
+        Camera { position: Vec3::ZERO, target: Vec3::ZERO, fov: f32::NAN, ..Camera::default() },
+        Camera { position: Vec3::NAN, target: Vec3::INFINITY, fov: -3.0, ..Camera::default() },
+        Camera { position: Vec3::Y * 0.1001, target: Vec3::ZERO, fov: 170.0, ..Camera::default() },
     ]
 }
 
@@ -230,7 +230,12 @@ pub fn body(mesh: &Mesh) -> MeshDraw<'_> {
 
 /// A portrait of the ball.
 pub fn camera() -> Camera {
-    Camera { position: Vec3::new(0.38, 0.02, 0.95), target: Vec3::new(0.0, -0.06, 0.0), fov: 26.0 }
+    Camera {
+        position: Vec3::new(0.38, 0.02, 0.95),
+        target: Vec3::new(0.0, -0.06, 0.0),
+        fov: 26.0,
+        ..Camera::default()
+    }
 }
 
 /// A frame with default settings.

@@ -1,9 +1,10 @@
-//! The box that hair and head stay in over the whole motion, for a camera that is set automatically.
+//! What a camera that is set automatically shows: the box that hair and head stay in, and the path that they take.
 
 use super::{
     Stage,
     body_pose::Pose,
     rehearsal::{self, Rehearsal},
+    subject_path::SubjectPath,
 };
 use crate::Scene;
 use glam::{Affine3A, Quat, Vec3};
@@ -16,37 +17,79 @@ const POSES: usize = 240;
 /// Maximum number of strands of a groom, and of vertices of the body, that are measured in each pose.
 const SAMPLES: usize = 2_000;
 
+/// Rate at which the path of the subject is sampled [Hz], and the maximum number of samples: the rate is lower for a longer
+/// motion.
+const PATH_RATE: f64 = 30.0;
+const PATH_SAMPLES: f64 = 6_000.0;
+
+/// Halvings of a sample's interval that give the time of a cut in it.
+const HALVINGS: usize = 24;
+
+/// Maximum number of roots whose mean is the path of the subject.
+const ROOTS: usize = 64;
+
 /// The part of the body that belongs to the subject: distance from the hair's box, relative to its diagonal.
 const NEARBY: f32 = 0.15;
 
 /// Margin around the subject, relative to the diagonal of the hair at rest.
 const MARGIN: f32 = 0.06;
 
+/// Size of the box of the whole motion, relative to that of the subject alone, above which it travels.
+const TRAVELS: f32 = 1.5;
+
 /// A box (min, max) [m].
 type Bounds = (Vec3, Vec3);
 
+/// The subject of a scene: the hair, and the part of the body near it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Subject {
+    /// The box (min, max) [m] that holds the subject over the whole motion, with a margin.
+    pub bounds: (Vec3, Vec3),
+    /// The box (min, max) [m] that holds it if the box moves along the path, where it is at the start.
+    pub moving_bounds: (Vec3, Vec3),
+    /// The path of the subject.
+    pub path: SubjectPath,
+}
+
+impl Subject {
+    /// Returns whether the subject goes so far that it would be small in a picture of its whole motion.
+    pub fn travels(&self) -> bool {
+        let size = |(low, high): Bounds| (high - low).max_element();
+        size(self.bounds) > TRAVELS * size(self.moving_bounds)
+    }
+}
+
 impl Stage {
-    /// Returns the box (min, max) [m] of the subject over the whole motion: the hair, and the part of the body near it, with
-    /// a margin. It depends on the scene only, not on the current time. `None` if no point is finite.
+    /// Returns the subject over the whole motion. It depends on the scene only, not on the current time. `None` if no point
+    /// is finite.
     ///
     /// A few strands are simulated once through the first 20 s, without colliders. Where they swing out of the box of the
     /// rigidly moving hair, the box gets larger, at all times.
-    pub fn subject_bounds(&self) -> Option<Bounds> {
+    pub fn subject(&self) -> Option<Subject> {
         let points = self.hair.iter().flat_map(|hair| &hair.groom().points).copied();
         let rest = points.fold(None, around)?;
         let size = rest.0.distance(rest.1);
-        let subject = Subject::new(self, rest, size * NEARBY);
-        let (beyond, swung) = subject.rehearse();
-        let moved =
-            times(&self.scene).into_par_iter().filter_map(|time| subject.bounds(time)).reduce_with(join);
-        let rigid = moved.map_or(rest, |moved| join(rest, moved));
-        let (low, high) = swung.map_or(rigid, |swung| join(rigid, swung));
+        let samples = Samples::new(self, rest, size * NEARBY);
+        let path = samples.path();
+        let (beyond, swung) = samples.rehearse();
+        let times = times(&self.scene);
+        let rigid: Vec<(f64, Bounds)> =
+            times.into_par_iter().filter_map(|time| Some((time, samples.bounds(time)?))).collect();
         // The part of the motion that is not rehearsed.
         let long = self.scene.clip.as_ref().is_some_and(|clip| clip.duration() > rehearsal::LONGEST);
-        let (low, high) =
-            if long { join((low, high), (rigid.0 - beyond.0, rigid.1 + beyond.1)) } else { (low, high) };
-        let room = Vec3::splat(size * MARGIN);
-        Some((low - room, high + room))
+        let bounds = |path: &SubjectPath| {
+            let moved = |bounds: Bounds, (time, at): &(f64, Bounds)| {
+                let offset = path.offset(*time);
+                join(bounds, (at.0 - offset, at.1 - offset))
+            };
+            let rigid = rigid.iter().fold(rest, moved);
+            let (low, high) = swung.iter().fold(rigid, moved);
+            let (low, high) =
+                if long { join((low, high), (rigid.0 - beyond.0, rigid.1 + beyond.1)) } else { (low, high) };
+            let room = Vec3::splat(size * MARGIN);
+            (low - room, high + room)
+        };
+        Some(Subject { bounds: bounds(&SubjectPath::default()), moving_bounds: bounds(&path), path })
     }
 }
 
@@ -87,8 +130,8 @@ impl<'a> Posed<'a> {
     }
 }
 
-/// What the camera shows: all hair, and the part of the body near it.
-struct Subject<'a> {
+/// The parts of the subject that are measured: strands, and vertices of the body near them.
+struct Samples<'a> {
     stage: &'a Stage,
     /// The body in the pose in which hair is built on it.
     first: Option<Posed<'a>>,
@@ -96,7 +139,7 @@ struct Subject<'a> {
     vertices: Vec<u32>,
 }
 
-impl<'a> Subject<'a> {
+impl<'a> Samples<'a> {
     /// `hair`: the box of the hair at rest. Vertices belong to the subject within `reach` [m] of it.
     fn new(stage: &'a Stage, hair: Bounds, reach: f32) -> Self {
         let first = stage.scene.body.as_ref().map(|body| {
@@ -123,10 +166,43 @@ impl<'a> Subject<'a> {
         self.stage.hair.iter().fold(skin, |bounds, hair| self.hair_bounds(hair.groom(), now, bounds))
     }
 
+    /// The path of the mean of some roots.
+    fn path(&self) -> SubjectPath {
+        let Stage { scene, hair, body, .. } = self.stage;
+        let Some(clip) = &scene.clip else { return SubjectPath::default() };
+        let all =
+            || hair.iter().flat_map(|hair| (0..hair.groom().strand_count()).map(move |s| (hair.groom(), s)));
+        let roots: Vec<_> = all().step_by(all().count().div_ceil(ROOTS).max(1)).collect();
+        let rate = (PATH_SAMPLES / clip.duration().max(1e-3)).min(PATH_RATE);
+        let time = |sample: usize| (sample as f64 / rate).min(clip.duration());
+        let last = (clip.duration() * rate).ceil() as usize;
+        let mean = |sample: usize| {
+            let posed = self.posed(time(sample));
+            let now = posed.as_ref().or(self.first.as_ref());
+            let root = |(groom, strand): &(&Groom, usize)| self.root(groom, *strand, now).0;
+            roots.iter().map(root).sum::<Vec3>() / roots.len() as f32
+        };
+        let positions: Vec<Vec3> = (0..=last).into_par_iter().map(mean).collect();
+        let anchor = body.pose().anchor_joint();
+        let cut =
+            |from: f64, to: f64| body.pose().cut(scene, (from, to)).get(anchor).is_some_and(Option::is_some);
+        let time_of_cut = |sample: usize| {
+            let (mut from, mut to) = (time(sample - 1), time(sample));
+            cut(from, to).then(|| {
+                for _ in 0..HALVINGS {
+                    let middle = 0.5 * (from + to);
+                    *(if cut(from, middle) { &mut to } else { &mut from }) = middle;
+                }
+                to
+            })
+        };
+        SubjectPath::new(&positions, rate, &(1..=last).filter_map(time_of_cut).collect::<Vec<_>>())
+    }
+
     /// Returns how far strands swing out of the box of the same strands that move rigidly, on its lower and upper sides [m],
-    /// and their box.
-    fn rehearse(&self) -> (Bounds, Option<Bounds>) {
-        let (mut beyond, mut swung) = ((Vec3::ZERO, Vec3::ZERO), None);
+    /// and their box at each time [s].
+    fn rehearse(&self) -> (Bounds, Vec<(f64, Bounds)>) {
+        let (mut beyond, mut swung) = ((Vec3::ZERO, Vec3::ZERO), Vec::new());
         let Stage { scene, hair, body, .. } = self.stage;
         let frames = Rehearsal::frames(scene);
         let Some(mut rehearsal) = (frames > 0).then(|| Rehearsal::new(self.stage)).flatten() else {
@@ -160,7 +236,7 @@ impl<'a> Subject<'a> {
             });
             if let (Some(points), Some(rigid)) = (box_of_points, rigid) {
                 beyond = (beyond.0.max(rigid.0 - points.0), beyond.1.max(points.1 - rigid.1));
-                swung = Some(swung.map_or(points, |swung| join(swung, points)));
+                swung.push((to, points));
             }
         }
         (beyond, swung)

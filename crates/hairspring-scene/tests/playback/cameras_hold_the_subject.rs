@@ -1,6 +1,7 @@
 //! Promise: the camera that is set automatically keeps hair and head in view, and shows them large. The box that it shows
 //! holds all strands in every frame of the motion, is at most 1.5 times as large as they need, holds the face, and does
-//! not depend on the current time.
+//! not depend on the current time. Hair that travels is followed: a small box that moves along its path holds it, also
+//! across cuts.
 
 use glam::{Quat, Vec3};
 use hairspring::{
@@ -16,7 +17,7 @@ use hairspring_scene::{
 
 /// The fraction of points outside the box, over all frames, and the largest side of the box over that of all points.
 fn outside(stage: &mut Stage, frames: usize) -> (f64, f32) {
-    let (low, high) = stage.subject_bounds().unwrap();
+    let (low, high) = stage.subject().unwrap().bounds;
     let (mut out, mut all) = (0, 0);
     let mut needed = (Vec3::MAX, Vec3::MIN);
     for _ in 0..frames {
@@ -73,7 +74,7 @@ fn the_box_holds_long_hair_in_gusts_and_a_quick_turn() {
 fn the_box_holds_the_head_and_not_the_whole_bust() {
     let options = BuiltinOptions { strands: 100, ..BuiltinOptions::new(Style::ShortFur) };
     let stage = Stage::new(scene(&options)).unwrap();
-    let (low, high) = stage.subject_bounds().unwrap();
+    let (low, high) = stage.subject().unwrap().bounds;
     let (nose, chin) = (Vec3::new(0.0, -0.036, 0.1), Vec3::new(0.0, -0.11, 0.07));
     for p in [nose, chin] {
         assert!(p.cmpge(low).all() && p.cmple(high).all(), "{p} of {low} to {high}");
@@ -108,17 +109,66 @@ fn traveler() -> Scene {
 #[test]
 fn the_box_holds_the_whole_way_at_any_time() {
     let mut stage = Stage::new(traveler()).unwrap();
-    let first = stage.subject_bounds();
-    let (low, high) = first.unwrap();
+    let first = stage.subject();
+    let (low, high) = first.clone().unwrap().bounds;
     assert!(low.x < 0.0 && high.x > 3.0, "{low} to {high}");
     assert_eq!(outside(&mut stage, 61).0, 0.0);
-    assert_eq!(stage.subject_bounds(), first);
+    assert_eq!(stage.subject(), first);
+}
+
+/// The fraction of points outside the box that moves along the path, over all frames.
+fn outside_the_moving_box(stage: &mut Stage, frames: usize) -> f64 {
+    let subject = stage.subject().unwrap();
+    let (mut out, mut all) = (0, 0);
+    for _ in 0..frames {
+        let [low, high] =
+            [subject.moving_bounds.0, subject.moving_bounds.1].map(|p| p + subject.path.offset(stage.time()));
+        for p in stage.strands().flat_map(|s| s.points) {
+            out += usize::from(p.cmplt(low).any() || p.cmpgt(high).any());
+            all += 1;
+        }
+        stage.step(1.0 / 30.0);
+    }
+    out as f64 / all as f64
+}
+
+#[test]
+fn the_box_that_follows_holds_hair_that_travels_and_is_small() {
+    let mut stage = Stage::new(traveler()).unwrap();
+    let subject = stage.subject().unwrap();
+    assert!(subject.travels());
+    let size = |(low, high): (Vec3, Vec3)| (high - low).max_element();
+    println!("{} m of {} m", size(subject.moving_bounds), size(subject.bounds));
+    assert!(size(subject.moving_bounds) < 0.8, "{:?}", subject.moving_bounds);
+    assert_eq!(outside_the_moving_box(&mut stage, 61), 0.0);
+}
+
+#[test]
+fn the_box_that_follows_is_placed_elsewhere_at_a_cut() {
+    let mut scene = traveler();
+    for sample in &mut scene.clip.as_mut().unwrap().samples[31..] {
+        sample.translation += Vec3::new(0.0, 0.0, 20.0);
+    }
+    let mut stage = Stage::new(scene).unwrap();
+    let path = stage.subject().unwrap().path;
+    assert_eq!(outside_the_moving_box(&mut stage, 61), 0.0);
+    // The camera does not leave the hair before the cut.
+    assert!(path.offset(30.9 / 30.0).z.abs() < 1e-3, "{}", path.offset(30.9 / 30.0));
+    assert!((path.offset(31.0 / 30.0).z - 20.0).abs() < 1e-3, "{}", path.offset(31.0 / 30.0));
+}
+
+#[test]
+fn a_head_that_turns_in_place_does_not_travel() {
+    for style in Style::ALL {
+        let options = BuiltinOptions { strands: 250, ..BuiltinOptions::new(style) };
+        assert!(!Stage::new(scene(&options)).unwrap().subject().unwrap().travels(), "{}", style.name());
+    }
 }
 
 #[test]
 fn the_box_holds_hair_that_is_blown_and_hair_that_falls() {
     let still = Scene { clip: None, ..traveler() };
-    let box_of = |scene: Scene| Stage::new(scene).unwrap().subject_bounds().unwrap();
+    let box_of = |scene: Scene| Stage::new(scene).unwrap().subject().unwrap().bounds;
     let (_, calm) = box_of(still.clone());
     let wind = Wind { velocity: Vec3::X * 8.0, ..Wind::default() };
     let (_, windy) = box_of(Scene { wind, ..still.clone() });
@@ -128,6 +178,6 @@ fn the_box_holds_hair_that_is_blown_and_hair_that_falls() {
     let strand: Vec<Vec3> = (0..8).map(|k| Vec3::new(0.02 * k as f32, 0.001, 0.0)).collect();
     falling.grooms[0].groom = Groom::from_strands(&[strand], 35e-6);
     let mut stage = Stage::new(falling).unwrap();
-    assert!(stage.subject_bounds().unwrap().0.y < -0.05);
+    assert!(stage.subject().unwrap().bounds.0.y < -0.05);
     assert_eq!(outside(&mut stage, 150).0, 0.0);
 }
