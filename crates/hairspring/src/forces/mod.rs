@@ -54,6 +54,7 @@ use crate::{
     simd::lanes::Row,
     strand::tile::{anisotropic_drag, position_spring},
 };
+use glam::Vec3;
 
 /// The per-point forces of all tiles in a frame. Each array has shape `[points]` over all tiles, or is empty
 /// if it is not in use.
@@ -111,4 +112,14 @@ impl ForceBuffers {
 pub(crate) struct FrameMotion {
     pub anchor: [RigidTransform; 2],
     pub dt: f32,
+}
+
+impl FrameMotion {
+    /// Rotation vector of the anchor over time [rad/s].
+    pub fn spin(&self) -> Vec3 {
+        let [start, end] = self.anchor;
+        let turn = end.rotation * start.rotation.inverse();
+        let turn = if turn.w < 0.0 { -turn } else { turn };
+        turn.to_scaled_axis() / self.dt
+    }
 }

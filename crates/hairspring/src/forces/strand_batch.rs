@@ -22,6 +22,8 @@ tile_arrays! {
     }
     per point {
         rest: shared RestRows,
+        /// See [`StrandView::air_cell`]; empty if no air is carried.
+        air_cell: shared [u32; LANES],
         state: shared StateRows,
         external_acceleration: unique [Row; 3],
         position_spring: unique [Row; position_spring::ROWS],

@@ -163,4 +163,20 @@ impl<'a> StrandView<'a> {
             row.0[self.lane] += v;
         }
     }
+
+    /// Returns the cell of dense hair whose air surrounds point `i`; `u32::MAX` for the air outside.
+    pub(crate) fn air_cell(&self, i: usize) -> u32 {
+        self.tile.air_cell[i * self.stride()][self.lane]
+    }
+
+    /// Replaces the share of the air at point `i` that does not come from outside by air of the velocity `inside` [m/s], relative
+    /// to the directional wind.
+    pub(crate) fn shelter_air(&mut self, i: usize, inside: Vec3) {
+        let at = i * self.stride();
+        let exposure = self.tile.rest[at][rest::EXPOSURE].0[self.lane];
+        for (row, inside) in self.tile.wind_delta[at].iter_mut().zip(inside.to_array()) {
+            let air = &mut row.0[self.lane];
+            *air = *air * exposure + inside * (1.0 - exposure);
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::{
     Simulation, SimulationBuilder,
+    carried_air::CarriedAir,
     cpu_solver::CpuSolver,
     layout::Order,
     manipulators::Manipulators,
@@ -86,6 +87,7 @@ impl Simulation {
             multipliers: Vec::new(),
             rest_penetration: Vec::new(),
             passes: Vec::new(),
+            carried_air: CarriedAir::default(),
             tethers: Vec::new(),
             tensions: Default::default(),
             longest: strands.iter().map(|s| groom.strand_length(*s as usize)).fold(0.0, f32::max),
@@ -119,6 +121,7 @@ impl Simulation {
             manipulators: Manipulators::default(),
             charged: Vec::new(),
             motion: Motion::default(),
+            carried_air: Vec::new(),
             last_h: 0.0,
         };
         let mut simulation = Simulation::with_parts(Arc::new(model), state);

@@ -11,14 +11,14 @@
 //! n is the length of hair per volume at rest, weighted by the multiplicity of each strand. τ is taken along
 //! the path from outside that crosses the least hair and no collider. In the point's own cell, e^(−τ) is
 //! averaged over the cell, without the hair itself. A lone hair therefore feels all of the air, and all hair
-//! together absorbs no more momentum than the air has. The factor e^(−τ) applies to wind and to the hair's
-//! own motion through the air.
+//! together absorbs no more momentum than the air has. The rest of the air moves with the hair
+//! (`carried_air.rs`).
 //!
 //! # Limitations
 //! n is that of the groom at rest. Wind from every side reaches a point along the same path. Occlusion behind
 //! hair and bodies, which depends on the wind direction, is in [`crate::air::WindOcclusion`].
 
-use super::Simulation;
+use super::{Simulation, carried_air::CarriedAir};
 use crate::{
     collide::ColliderPose,
     simd::lanes::LANES,
@@ -76,10 +76,12 @@ impl Simulation {
                 found.push((at, place % LANES, exposure));
             }
         }
-        let rows = &mut Arc::make_mut(&mut self.model).rest;
+        let model = Arc::make_mut(&mut self.model);
         for (at, lane, exposure) in found {
-            rows[at][rest::EXPOSURE].0[lane] = exposure;
+            model.rest[at][rest::EXPOSURE].0[lane] = exposure;
         }
+        model.carried_air = CarriedAir::new(model);
+        self.state.carried_air.clear();
     }
 
     /// Builds the density grid between `low` and `high`, with cells whose edge is at least `edge` [m].

@@ -33,11 +33,12 @@ impl Simulation {
         let transverse_drag =
             custom || self.state.manipulators.active.iter().any(|active| !active.tool.binds());
         let moving_air = occluded || input.air.varies();
+        let carried_air = !self.model.carried_air.is_empty();
         let kinds = ForceMask {
             external_acceleration: with_volume,
             position_spring: position_springs,
             anisotropic_drag: transverse_drag,
-            wind_delta: moving_air || custom,
+            wind_delta: moving_air || custom || carried_air,
         };
         self.forces.prepare(self.state.points.len(), kinds);
         let anchor = self.state.anchor;
@@ -57,16 +58,18 @@ impl Simulation {
         }
         let volume_took = began.elapsed();
         self.move_roots(input);
-        if !position_springs && !moving_air {
+        if !position_springs && !moving_air && !carried_air {
             return volume_took;
         }
         let motion = FrameMotion { anchor: [anchor, input.anchor], dt: input.dt };
+        let air_in_hair = carried_air.then(|| self.carry_air(motion.spin()));
         let mut strands = StrandBatch {
             tiles: &self.model.tiles,
             lanes: self.model.groom_strands.as_chunks().0,
             roots: &self.state.roots,
             strand: &self.model.strand,
             rest: &self.model.rest,
+            air_cell: &self.model.carried_air.cell,
             state: &self.state.points,
             external_acceleration: &mut self.forces.external_acceleration,
             position_spring: &mut self.forces.position_spring,
@@ -91,6 +94,7 @@ impl Simulation {
             self.occlusion.cast(&self.wind_occlusion, &air, &bodies, &hair);
             (&self.occlusion, hair)
         });
+        let uniform = air.uniform;
         let wind = WindSampler { air, occlusion };
         let charges = Charges { balls: &self.state.charged, hair: &self.hair_field };
         let (model, groom) = (&self.model, &self.model.groom);
@@ -117,6 +121,9 @@ impl Simulation {
             }
             for (_, force) in force_fields {
                 force.apply(strand);
+            }
+            if let Some(air) = &air_in_hair {
+                air.apply(&model.carried_air, groom.strand(s), uniform, strand);
             }
         };
         strands.each(&motion, &act);

@@ -23,6 +23,7 @@
 mod authored;
 mod build;
 mod builder;
+mod carried_air;
 mod contact_points;
 mod contacts;
 mod cpu_solver;

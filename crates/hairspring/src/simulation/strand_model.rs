@@ -1,5 +1,6 @@
 //! The model of the simulated strands: everything about them that a step does not change.
 
+use super::carried_air::CarriedAir;
 use crate::{
     groom::Groom,
     material::Material,
@@ -42,6 +43,8 @@ pub(crate) struct StrandModel {
     /// 1 + index of the collider that each point does not touch, because it was authored deep inside; 0 for the other
     /// points. As long as `rest`, or empty if there is no such point.
     pub(super) passes: Vec<Row>,
+    /// The air that dense hair carries along.
+    pub(super) carried_air: CarriedAir,
     /// Largest distance of each point from its root [m]; empty if no material has a tether.
     pub(super) tethers: Vec<Row>,
     /// Tensions of the rest shape: of segments and, in the springs model, of the triangles' sides. Shapes as

@@ -62,6 +62,14 @@ fn with_volume_and_strand_contact() {
 }
 
 #[test]
+fn with_dense_hair_that_carries_air() {
+    let mut hair = simulation(20, Material::default(), Solver::default());
+    hair.set_hair_multiplicity(vec![500.0; 20]);
+    hair.set_self_occlusion(&[]);
+    assert_repeats("dense hair", hair);
+}
+
+#[test]
 fn with_a_manipulator() {
     let mut hair = simulation(10, Material::default(), Solver::default());
     let grab = Grab { center: Vec3::new(0.0, -0.1, 0.03), radius: 0.05, pull: 60.0, damping: 1.0 };
