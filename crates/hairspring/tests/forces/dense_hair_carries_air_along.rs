@@ -21,13 +21,15 @@ const SPACING: f32 = 0.003;
 fn bundle(hairs: f32) -> (Arc<Groom>, Vec<bool>, Simulation) {
     let at = |k: usize| (k as f32 - 5.0) * SPACING;
     let root = |k: usize| Vec3::new(at(k % SIDE), 0.0, at(k / SIDE));
-    let strands = (0..SIDE * SIDE).map(|k| (0..17).map(|i| root(k) - Vec3::Y * (0.01 * i as f32)).collect::<Vec<_>>());
+    let strands =
+        (0..SIDE * SIDE).map(|k| (0..17).map(|i| root(k) - Vec3::Y * (0.01 * i as f32)).collect::<Vec<_>>());
     let groom = Arc::new(Groom::from_strands(strands, 35e-6));
     let material = Material { damping: 0.0, ..Material::default() };
     let mut simulation = Simulation::builder(groom.clone()).materials(&[material]).build().unwrap();
     simulation.set_hair_multiplicity(vec![hairs; groom.strand_count()]);
     simulation.set_self_occlusion(&[]);
-    let inside = (0..SIDE * SIDE).map(|k| [k % SIDE, k / SIDE].iter().all(|k| at(*k).abs() < 0.006)).collect();
+    let inside =
+        (0..SIDE * SIDE).map(|k| [k % SIDE, k / SIDE].iter().all(|k| at(*k).abs() < 0.006)).collect();
     (groom, inside, simulation)
 }
 
