@@ -169,14 +169,17 @@ impl<'a> StrandView<'a> {
         self.tile.air_cell[i * self.stride()][self.lane]
     }
 
-    /// Replaces the share of the air at point `i` that does not come from outside by air of the velocity `inside` [m/s], relative
-    /// to the directional wind.
-    pub(crate) fn shelter_air(&mut self, i: usize, inside: Vec3) {
+    /// Changes the air at point `i` from that outside the hair to that inside it, which moves at `inside` [m/s]. `uniform` is the
+    /// directional wind [m/s]. See `simulation/carried_air.rs`.
+    pub(crate) fn shelter_air(&mut self, i: usize, inside: Vec3, uniform: Vec3) {
         let at = i * self.stride();
-        let exposure = self.tile.rest[at][rest::EXPOSURE].0[self.lane];
-        for (row, inside) in self.tile.wind_delta[at].iter_mut().zip(inside.to_array()) {
-            let air = &mut row.0[self.lane];
-            *air = *air * exposure + inside * (1.0 - exposure);
+        let slip = self.tile.rest[at][rest::SLIP].0[self.lane];
+        let exposure = 2.0 * slip - 1.0;
+        for k in 0..3 {
+            let v = self.tile.state[at][state::V + k].0[self.lane];
+            let delta = &mut self.tile.wind_delta[at][k].0[self.lane];
+            let outer = (uniform[k] + *delta) * exposure;
+            *delta = (outer + (inside[k] - 0.5 * v) * (1.0 - exposure)) / slip - uniform[k];
         }
     }
 }

@@ -121,7 +121,6 @@ impl Simulation {
             manipulators: Manipulators::default(),
             charged: Vec::new(),
             motion: Motion::default(),
-            carried_air: Vec::new(),
             last_h: 0.0,
         };
         let mut simulation = Simulation::with_parts(Arc::new(model), state);
@@ -422,7 +421,7 @@ impl Lane<'_> {
             let p = shape.points[i.min(last)];
             let rows = &mut self.rest[i];
             rows[rest::MASS].0[lane] = p.mass as f32;
-            rows[rest::EXPOSURE].0[lane] = 1.0;
+            rows[rest::SLIP].0[lane] = 1.0;
             if i < last {
                 rows[rest::LENGTH].0[lane] = p.length as f32;
                 rows[rest::BEND].0[lane] = p.bend as f32;

@@ -1,22 +1,24 @@
 //! The air inside dense hair, which moves with the hair.
 //!
-//! A point that the share e of the outer air reaches (`exposure.rs`) is in air of the velocity
+//! A point that the share e of the outer air reaches (`exposure.rs`) moves relative to the air at
 //!
 //! ```text
-//! u = e w + (1 − e) V        w: the air outside the hair        V: the mean velocity of the hair around the point
+//! u = e w + (1 − e) (V + ½ (v − v₀)) − v      w: the air outside the hair        v, v₀: velocity of the point, now and at the start of
+//!                                             V: mean velocity around it, at the start of the frame                        the frame
+//!   = s (w + δ − v),   s = ½ (1 + e)          s: `rest::SLIP`        δ: `wind_delta`
 //! ```
 //!
 //! A head of hair that moves as one thus has little drag, while a hair that moves relative to its neighbors has that of a lone
 //! hair. If the inner hair had only e times the drag, each hair would swing by itself for half a minute.
 //!
-//! V is the mean of a cell at rest, weighted by length, multiplicity and 1 − e. The drag against it then takes momentum from no
-//! cell. Inside the cell, V turns with the hair's root. V is found once a frame, and continued to the middle of the frame at
-//! the acceleration of the last one: otherwise the air would hold back hair that speeds up.
+//! V is the mean in a cell at rest, weighted by length, multiplicity and 1 − e. The drag against it then takes momentum from no
+//! cell. Inside the cell, V turns with the hair's root. Within a frame, the air follows half of the change of a point's velocity. If it
+//! followed all of it, fast vibrations could gain energy; if it followed none, it would hold back hair that speeds up.
 //!
 //! # Limitations
 //! Neighbors are those at rest. Hair that is combed to the other side keeps them.
 
-use super::{Simulation, strand_model::StrandModel};
+use super::strand_model::StrandModel;
 use crate::{
     forces::StrandView,
     parallel::prelude::*,
@@ -29,8 +31,8 @@ use std::collections::BTreeMap;
 /// Edge length of a cell [m]: about the size of a lock.
 const CELL: f32 = 0.02;
 
-/// Smallest share of carried air that is computed [1].
-const LEAST: f32 = 0.01;
+/// Largest share of the outer air at which a point counts as in hair [1].
+const MOST_EXPOSED: f32 = 0.99;
 
 /// No cell.
 const NONE: u32 = u32::MAX;
@@ -52,13 +54,18 @@ struct Cell {
     middle: Vec3,
 }
 
+/// Returns the share of slip of a point that the share `exposure` of the outer air reaches [1].
+pub(super) fn slip(exposure: f32) -> f32 {
+    if exposure > MOST_EXPOSED { 1.0 } else { 0.5 * (1.0 + exposure) }
+}
+
 impl CarriedAir {
     /// Whether no air is carried.
     pub fn is_empty(&self) -> bool {
         self.cells.is_empty()
     }
 
-    /// Finds the cells of hair at rest, with the shares of the outer air in the rest shapes.
+    /// Finds the cells of hair at rest, from the shares of slip in the rest shapes.
     pub fn new(model: &StrandModel) -> Self {
         let mut cell = vec![[NONE; LANES]; model.rest.len()];
         let mut cells: Vec<Cell> = Vec::new();
@@ -67,13 +74,13 @@ impl CarriedAir {
             let (tile, lane) = (model.tiles[place / LANES], place % LANES);
             let hairs = model.multiplicity[*s as usize];
             let mut before = 0.0;
-            // The root moves the first two points.
             for (i, point) in model.groom.strand(*s as usize).iter().enumerate() {
                 let row = tile.first as usize + i * tile.model.stride();
                 let after = model.rest[row][rest::LENGTH].0[lane];
                 let length = 0.5 * (after + std::mem::replace(&mut before, after));
-                let carried = 1.0 - model.rest[row][rest::EXPOSURE].0[lane];
-                if i < 2 || carried < LEAST {
+                let carried = 2.0 * (1.0 - model.rest[row][rest::SLIP].0[lane]);
+                // The root moves the first two points.
+                if i < 2 || carried == 0.0 {
                     continue;
                 }
                 let key = (*point / CELL).floor().as_ivec3().to_array();
@@ -113,19 +120,7 @@ impl CarriedAir {
     }
 }
 
-impl Simulation {
-    /// Finds the velocity of the air inside the hair for a frame in which the anchor rotates by `spin` [rad/s].
-    pub(super) fn carry_air(&mut self, spin: Vec3) -> AirInHair {
-        let mut velocities = self.model.carried_air.velocities(&self.state.points);
-        let before = std::mem::replace(&mut self.state.carried_air, velocities.clone());
-        if before.len() == velocities.len() {
-            velocities.iter_mut().zip(&before).for_each(|(v, before)| *v += 0.5 * (*v - *before));
-        }
-        AirInHair { velocities, spin }
-    }
-}
-
-/// The air inside the hair during a frame.
+/// The air inside the hair in a frame.
 pub(super) struct AirInHair {
     /// Of each cell [m/s].
     velocities: Vec<Vec3>,
@@ -134,6 +129,11 @@ pub(super) struct AirInHair {
 }
 
 impl AirInHair {
+    /// Finds the air from the velocities of the points at the start of a frame in which the hair rotates by `spin` [rad/s].
+    pub fn new(carried: &CarriedAir, points: &[StateRows], spin: Vec3) -> Self {
+        Self { velocities: carried.velocities(points), spin }
+    }
+
     /// Changes the air at the points of a strand from that outside to that inside the hair. `rest` has the points at rest [m],
     /// and `uniform` is the directional wind [m/s].
     pub fn apply(&self, carried: &CarriedAir, rest: &[Vec3], uniform: Vec3, strand: &mut StrandView) {
@@ -145,7 +145,7 @@ impl AirInHair {
             }
             let off = turn * (*rest - carried.cells[cell as usize].middle);
             let inside = self.velocities[cell as usize] + self.spin.cross(off);
-            strand.shelter_air(i, inside - uniform);
+            strand.shelter_air(i, inside, uniform);
         }
     }
 }

@@ -18,7 +18,10 @@
 //! n is that of the groom at rest. Wind from every side reaches a point along the same path. Occlusion behind
 //! hair and bodies, which depends on the wind direction, is in [`crate::air::WindOcclusion`].
 
-use super::{Simulation, carried_air::CarriedAir};
+use super::{
+    Simulation,
+    carried_air::{CarriedAir, slip},
+};
 use crate::{
     collide::ColliderPose,
     simd::lanes::LANES,
@@ -78,10 +81,9 @@ impl Simulation {
         }
         let model = Arc::make_mut(&mut self.model);
         for (at, lane, exposure) in found {
-            model.rest[at][rest::EXPOSURE].0[lane] = exposure;
+            model.rest[at][rest::SLIP].0[lane] = slip(exposure);
         }
         model.carried_air = CarriedAir::new(model);
-        self.state.carried_air.clear();
     }
 
     /// Builds the density grid between `low` and `high`, with cells whose edge is at least `edge` [m].

@@ -1,6 +1,6 @@
 //! External forces of a frame: first the hair volume, then each effect.
 
-use super::{Simulation, StepInput};
+use super::{Simulation, StepInput, carried_air::AirInHair};
 use crate::{
     collide::FrameColliders,
     forces::{
@@ -62,7 +62,8 @@ impl Simulation {
             return volume_took;
         }
         let motion = FrameMotion { anchor: [anchor, input.anchor], dt: input.dt };
-        let air_in_hair = carried_air.then(|| self.carry_air(motion.spin()));
+        let air_in_hair =
+            carried_air.then(|| AirInHair::new(&self.model.carried_air, &self.state.points, motion.spin()));
         let mut strands = StrandBatch {
             tiles: &self.model.tiles,
             lanes: self.model.groom_strands.as_chunks().0,

@@ -72,7 +72,6 @@ impl Simulation {
             first = own.end;
             self.set_strand(place, &points[own.clone()], &velocities[own]);
         }
-        self.state.carried_air.clear();
         Ok(())
     }
 

@@ -66,7 +66,6 @@ impl Simulation {
             neighbours.clear();
         }
         self.state.motion = super::teleport::Motion::default();
-        self.state.carried_air.clear();
         self.state.last_h = 0.0;
     }
 

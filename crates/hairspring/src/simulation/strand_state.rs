@@ -8,7 +8,6 @@ use crate::{
     strand::tile::{HistoryRows, HoldRows, RootRows, SegmentContactRows, StateRows},
     strand_contact::Contact,
 };
-use glam::Vec3;
 
 /// Positions, velocities, tensions and contact forces of the simulated strands, and the motion of their roots.
 #[derive(Clone)]
@@ -33,8 +32,6 @@ pub(crate) struct StrandState {
     pub(super) charged: Vec<ChargedBall>,
     /// How the anchor moved in the last frame.
     pub(super) motion: Motion,
-    /// Velocity of the air in each cell of dense hair at the start of the last frame [m/s]; empty before the first.
-    pub(super) carried_air: Vec<Vec3>,
     /// Length of the last substep [s]; 0 before the first.
     pub(super) last_h: f32,
 }

@@ -98,7 +98,7 @@ impl Simulation {
                 self.state.points[to][at].0[lane] = old.state.points[from][at].0[from_lane];
             }
             let model = Arc::make_mut(&mut self.model);
-            for at in [rest::CLEARANCE, rest::EXPOSURE] {
+            for at in [rest::CLEARANCE, rest::SLIP] {
                 model.rest[to][at].0[lane] = old.model.rest[from][at].0[from_lane];
             }
             if let Some(authored) = model.rest_penetration.get_mut(to) {
@@ -136,7 +136,7 @@ impl Simulation {
             let at = self.model.tiles[place / LANES].first as usize + i;
             let was_at = old.model.tiles[from / LANES].first as usize + i_was;
             let model = Arc::make_mut(&mut self.model);
-            for row in [rest::CLEARANCE, rest::EXPOSURE] {
+            for row in [rest::CLEARANCE, rest::SLIP] {
                 model.rest[at][row].0[place % LANES] = old.model.rest[was_at][row].0[from % LANES];
             }
             if let Some(authored) = model.rest_penetration.get_mut(at) {

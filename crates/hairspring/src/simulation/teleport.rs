@@ -61,7 +61,6 @@ impl Simulation {
         self.state.anchor = by * self.state.anchor;
         self.state.motion.velocity = turn * self.state.motion.velocity;
         self.state.motion.spin = turn * self.state.motion.spin;
-        self.state.carried_air.iter_mut().for_each(|v| *v = turn * *v);
     }
 
     /// Moves the hair rigidly before a frame: by the part that `inertia` leaves, or completely if the anchor

@@ -322,7 +322,7 @@ fn add_point<S, M, const B: usize, const N: usize>(
     if phase + 1 == M::STRIDE {
         let u = segment.u;
         let local = tile.wind_delta.get(i + 1).map_or(V3::zero(simd), |air| V3::load(simd, air));
-        let drag = Drag::new(simd, tile.strand, V3::splat(simd, step.wind) + local - v, u);
+        let drag = Drag::new(simd, tile.strand, &tile.rest[i + 1], V3::splat(simd, step.wind) + local - v, u);
         let (across, along) = (segment.air * drag.across, segment.air * drag.along);
         let moving = if sweep == Linearization::Initial {
             v

@@ -25,7 +25,7 @@
 //! Each substep keeps k_n and k_t fixed at the velocity at its start, so that drag is linear in the unknown
 //! velocity.
 
-use super::tile::{StrandRows, strand};
+use super::tile::{RestRows, StrandRows, rest, strand};
 use crate::simd::lanes::{F, Simd, V3, load};
 use std::ops::{Add, Div, Mul};
 
@@ -35,7 +35,7 @@ pub const AIR_KINEMATIC_VISCOSITY: f32 = 1.516e-5;
 /// Viscosity μ of air at 20 °C [Pa s]: ν times the density, 1.204 kg/m³.
 pub const AIR_VISCOSITY: f32 = 1.204 * AIR_KINEMATIC_VISCOSITY;
 
-/// Drag coefficients: force over length, viscosity and the velocity of the air [1].
+/// Drag coefficients: force over length, viscosity and `slip` [1].
 pub struct Drag<S: Simd> {
     /// k_n.
     pub across: F<S>,
@@ -44,16 +44,17 @@ pub struct Drag<S: Simd> {
 }
 
 impl<S: Simd> Drag<S> {
-    /// Computes the coefficients for a point with the unit tangent `u`. `slip` is the velocity of the air relative to the
-    /// point [m/s].
+    /// Computes the coefficients for a point with this rest shape and the unit tangent `u`. `slip` is the
+    /// velocity of the air relative to the point, over the point's share of slip [m/s].
     #[inline(always)]
-    pub fn new(simd: S, strand_rows: &StrandRows, slip: V3<S>, u: V3<S>) -> Self {
+    pub fn new(simd: S, strand_rows: &StrandRows, rest_rows: &RestRows, slip: V3<S>, u: V3<S>) -> Self {
         let normal = slip - u * u.dot(slip);
-        let reynolds = normal.dot(normal).sqrt() * load(simd, &strand_rows[strand::REYNOLDS]);
+        let share = load(simd, &rest_rows[rest::SLIP]);
+        let reynolds = normal.dot(normal).sqrt() * load(simd, &strand_rows[strand::REYNOLDS]) * share;
         let root = reynolds.sqrt();
         let across = normal_coefficient(root);
         let along = (across * 0.5).min(root * 2.7 + 0.7);
-        Self { across, along }
+        Self { across: across * share, along: along * share }
     }
 }
 

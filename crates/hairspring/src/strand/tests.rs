@@ -367,6 +367,7 @@ pub fn rows(s: &reference::Strand) -> ((RootRows, StrandRows), Vec<RestRows>, Ve
     set(&mut strand_rows, strand::TWIST_RATIO, &[reference::TWIST_RATIO as f32]);
     let tangent: Vec<DVec3> = s.x.windows(2).map(|w| (w[1] - w[0]).normalize()).collect();
     for i in 0..n {
+        set(&mut rest_rows[i], rest::SLIP, &[1.0]);
         set(&mut rest_rows[i], rest::LENGTH, &[s.length[i] as f32]);
         set(&mut rest_rows[i], rest::MASS, &[s.mass[i] as f32]);
         set(&mut rest_rows[i], rest::BEND, &[s.bend[i] as f32]);

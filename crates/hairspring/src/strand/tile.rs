@@ -44,8 +44,9 @@ pub mod rest {
     /// Rest twist φ of the joint at this point, from the segment before to the one after, as 4 tan(φ/4) [1];
     /// see `rod`.
     pub const TWIST: usize = 7;
-    /// Share of the air outside the hair that reaches this point [1]; 1 on a lone hair. The kernel does not read it.
-    pub const EXPOSURE: usize = 8;
+    /// Share of this point's velocity that is relative to the air [1]: 1 on a lone hair, and less where the air moves with
+    /// the hair; see `simulation/carried_air.rs`.
+    pub const SLIP: usize = 8;
     /// Rows a point.
     pub const ROWS: usize = 9;
 }

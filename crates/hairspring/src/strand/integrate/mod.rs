@@ -150,7 +150,7 @@ fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u
     let nothing = V3::zero(simd);
     let air = tile.wind_delta.get(i).map_or(nothing, |air| V3::load(simd, air));
     let slip = V3::splat(simd, step.wind) + air - v;
-    let coefficients = Drag::new(simd, tile.strand, slip, u);
+    let coefficients = Drag::new(simd, tile.strand, &tile.rest[i], slip, u);
     let (across, along) = (stable(coefficients.across), stable(coefficients.along));
     let dragged = slip * across + u * (u.dot(slip) * (along - across));
     let push = tile.external_acceleration.get(i).map_or(nothing, |push| V3::load(simd, push));
