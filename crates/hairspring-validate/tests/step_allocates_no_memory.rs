@@ -63,6 +63,19 @@ fn hair_on_hair_allocates_nothing() {
         });
         assert_eq!(counted, 0, "{counted} allocations in 20 steps with the volume method {}", method.name());
     }
+    // Dense hair, which carries air.
+    let counted = on_threads(1, || {
+        let mut bench = Bench::new(200, 16, Solver::default());
+        bench.simulation.set_hair_multiplicity(vec![500.0; 200]);
+        bench.simulation.set_self_occlusion(&[]);
+        bench.step();
+        let before = COUNT.get();
+        for _ in 0..20 {
+            bench.step();
+        }
+        COUNT.get() - before
+    });
+    assert_eq!(counted, 0, "{counted} allocations in 20 steps of dense hair");
     // Strand contact.
     let counted = on_threads(1, || {
         let mut bench = Bench::new(200, 16, Solver::default());

@@ -2,7 +2,7 @@
 
 use super::{
     Simulation, SimulationBuilder,
-    carried_air::CarriedAir,
+    carried_air::{AirInHair, CarriedAir},
     cpu_solver::CpuSolver,
     layout::Order,
     manipulators::Manipulators,
@@ -149,6 +149,7 @@ impl Simulation {
             forces_added: 0,
             forces: ForceBuffers::default(),
             hair_field: HairField::default(),
+            air_in_hair: AirInHair::default(),
             volume: None,
             neighbours: None,
             noise: Noise::default(),

@@ -105,22 +105,10 @@ impl CarriedAir {
         }
         Self { cell, cells }
     }
-
-    /// The mean velocity of the hair in each cell [m/s].
-    fn velocities(&self, points: &[StateRows]) -> Vec<Vec3> {
-        let mean = |cell: &Cell| {
-            let velocity = |row: u32, lane: u8| {
-                Vec3::from([0, 1, 2].map(|k| points[row as usize][state::V + k].0[lane as usize]))
-            };
-            // A strand that is reset because it is not finite does not spread.
-            let finite = |v: Vec3| if v.is_finite() { v } else { Vec3::ZERO };
-            cell.points.iter().map(|&(row, lane, weight)| finite(velocity(row, lane)) * weight).sum()
-        };
-        self.cells.par_iter().with_min_len(64).map(mean).collect()
-    }
 }
 
 /// The air inside the hair in a frame.
+#[derive(Default)]
 pub(super) struct AirInHair {
     /// Of each cell [m/s].
     velocities: Vec<Vec3>,
@@ -128,10 +116,26 @@ pub(super) struct AirInHair {
     spin: Vec3,
 }
 
+impl Cell {
+    /// The mean velocity of its points [m/s].
+    fn velocity(&self, points: &[StateRows]) -> Vec3 {
+        let velocity = |row: u32, lane: u8| {
+            let v = Vec3::from([0, 1, 2].map(|k| points[row as usize][state::V + k].0[lane as usize]));
+            // A strand that is reset because it is not finite does not spread.
+            if v.is_finite() { v } else { Vec3::ZERO }
+        };
+        self.points.iter().map(|&(row, lane, weight)| velocity(row, lane) * weight).sum()
+    }
+}
+
 impl AirInHair {
     /// Finds the air from the velocities of the points at the start of a frame in which the hair rotates by `spin` [rad/s].
-    pub fn new(carried: &CarriedAir, points: &[StateRows], spin: Vec3) -> Self {
-        Self { velocities: carried.velocities(points), spin }
+    pub fn measure(&mut self, carried: &CarriedAir, points: &[StateRows], spin: Vec3) {
+        self.spin = spin;
+        self.velocities.resize(carried.cells.len(), Vec3::ZERO);
+        self.velocities.par_iter_mut().zip(&carried.cells).with_min_len(64).for_each(|(mean, cell)| {
+            *mean = cell.velocity(points);
+        });
     }
 
     /// Changes the air at the points of a strand from that outside to that inside the hair. `rest` has the points at rest [m],

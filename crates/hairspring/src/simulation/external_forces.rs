@@ -1,6 +1,6 @@
 //! External forces of a frame: first the hair volume, then each effect.
 
-use super::{Simulation, StepInput, carried_air::AirInHair};
+use super::{Simulation, StepInput};
 use crate::{
     collide::FrameColliders,
     forces::{
@@ -62,8 +62,9 @@ impl Simulation {
             return volume_took;
         }
         let motion = FrameMotion { anchor: [anchor, input.anchor], dt: input.dt };
-        let air_in_hair =
-            carried_air.then(|| AirInHair::new(&self.model.carried_air, &self.state.points, motion.spin()));
+        if carried_air {
+            self.air_in_hair.measure(&self.model.carried_air, &self.state.points, motion.spin());
+        }
         let mut strands = StrandBatch {
             tiles: &self.model.tiles,
             lanes: self.model.groom_strands.as_chunks().0,
@@ -100,7 +101,7 @@ impl Simulation {
         let charges = Charges { balls: &self.state.charged, hair: &self.hair_field };
         let (model, groom) = (&self.model, &self.model.groom);
         let manipulators = &self.state.manipulators.active;
-        let force_fields = &self.force_fields;
+        let (force_fields, air_in_hair) = (&self.force_fields, &self.air_in_hair);
         let act = |strand: &mut StrandView| {
             let s = strand.strand;
             if global_shapes {
@@ -123,8 +124,8 @@ impl Simulation {
             for (_, force) in force_fields {
                 force.apply(strand);
             }
-            if let Some(air) = &air_in_hair {
-                air.apply(&model.carried_air, groom.strand(s), uniform, strand);
+            if carried_air {
+                air_in_hair.apply(&model.carried_air, groom.strand(s), uniform, strand);
             }
         };
         strands.each(&motion, &act);

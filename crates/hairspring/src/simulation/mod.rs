@@ -84,6 +84,7 @@ use crate::{
     strand_contact::Neighbours,
     volume::Volume,
 };
+use carried_air::AirInHair;
 use cpu_solver::CpuSolver;
 use fearless_simd::Level;
 use glam::Vec3;
@@ -115,6 +116,7 @@ pub struct Simulation {
     /// External forces on points in the last frame.
     forces: ForceBuffers,
     hair_field: HairField,
+    air_in_hair: AirInHair,
     /// The hair volume: density, and forces between hair; `None` if strands pass through each other and
     /// nothing needs the density.
     volume: Option<Box<Volume>>,
