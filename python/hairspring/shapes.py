@@ -133,6 +133,13 @@ def expand(values: np.ndarray, interpolation: str, curve: int, counts: np.ndarra
     return np.stack(columns, axis=1).reshape(points, *own.shape[1:])
 
 
+def unplayed(times: set[float]) -> list[str]:
+    """A note that curves with samples at these times are read at the first one; none for curves that do not move."""
+    if len(times) < 2:
+        return []
+    return [f"the curves have {len(times)} time samples, which are not played: strands are read at the first one, and follow the [body]"]
+
+
 def naming(names: list[str]) -> str:
     """The first three names, and the number of the others."""
     more = f" and {len(names) - 3} more" if len(names) > 3 else ""

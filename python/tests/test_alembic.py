@@ -141,6 +141,18 @@ def test_samples_between_frames_have_their_times(tmp_path, program):
     np.testing.assert_allclose(np.array(times) * 24, [10, 10.5, 11, 11.5, 12])
 
 
+@pytest.mark.parametrize("suffix", ["abc", "usda"])
+def test_curves_that_move_are_read_at_their_first_sample_with_a_note(tmp_path, program, suffix):
+    if suffix == "usda":
+        pytest.importorskip("pxr")
+    for frames, said in [("1-3", 1), ("1", 0)]:
+        path = tmp_path / f"frames-{frames}.{suffix}"
+        code, _, error = program("bake", shot(tmp_path), "-o", path, "--frames", frames, "--fps", "24")
+        assert code == 0, error
+        notes = [note for note in hs.Groom.read(path).notes if "time samples, which are not played" in note]
+        assert len(notes) == said, notes
+
+
 # The attributes of Unreal's groom schema 1.5, with their scope in Alembic and their interpolation in USD.
 UNREAL = {
     "groom_group_id": "uni",

@@ -11,7 +11,7 @@ from alembic3d import Abc, AbcGeom
 from ..formats import FACTORS, MAX_POSITIONS, MAX_RATE, MAX_SAMPLES, Curves, FormatError, MovingMesh, as_lengths_and_points
 from ..formats import AbsentError, guides_from_flags
 from ..shapes import DEFAULT_RADIUS, check_counts, distinct, expand, fitted, naming, of_strands, on_curve, spacing, triangulate
-from ..shapes import varying_count
+from ..shapes import unplayed, varying_count
 from .guides import guides_of, repeats, strands_of_ids
 
 BASES = {"kBezierBasis": "bezier", "kBsplineBasis": "bspline", "kCatmullromBasis": "catmullRom"}
@@ -166,6 +166,7 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
     notes: list[str] = []
     found = list(visible(archive.getTop(), AbcGeom.ICurves, notes))
     unused(found, notes)
+    notes += unplayed(times_of(found))
     parts = [read_object(curves.getFullName(), curves.getSchema(), above, to, notes) for curves, above in found]
     read = [part for part in parts if part]
     if not read:
@@ -320,17 +321,22 @@ def join(read: list[dict], notes: list[str]) -> Curves:
     return curves
 
 
+def times_of(found: list[tuple]) -> set[float]:
+    """The times [s] of the samples of any of these objects, and of the transforms above them; none of what has one sample."""
+    times: set[float] = set()
+    for item, above in found:
+        for schema in [item.getSchema(), *above]:
+            sampling, count = schema.getTimeSampling(), schema.getNumSamples()
+            if count > 1:
+                times.update(sampling.getSampleTime(k) for k in range(count))
+    return times
+
+
 def sample_times(meshes: list[tuple], notes: list[str]) -> tuple[np.ndarray, float]:
     """The times [s] at which any of `meshes` moves, equally spaced, and their rate [Hz]; one time if nothing moves.
 
     They are as close as the closest two samples, but not closer than 1/240 s; a note says if samples are closer."""
-    times: set[float] = set()
-    for mesh, above in meshes:
-        for schema in [mesh.getSchema(), *above]:
-            sampling, count = schema.getTimeSampling(), schema.getNumSamples()
-            if count > 1:
-                times.update(sampling.getSampleTime(k) for k in range(count))
-    ordered = distinct(times)
+    ordered = distinct(times_of(meshes))
     if len(ordered) < 2:
         return np.zeros(1), 24.0
     closest, span = spacing(ordered), float(ordered[-1] - ordered[0])

@@ -9,9 +9,9 @@ from pxr import Usd, UsdGeom, UsdSkel
 
 from . import material
 from ..formats import FACTORS, MAX_POSITIONS, AbsentError, Curves, FormatError, as_lengths_and_points, guides_from_flags
-from ..shapes import DEFAULT_RADIUS, check_counts, expand, fitted, of_strands, on_curve, varying_count
+from ..shapes import DEFAULT_RADIUS, check_counts, expand, fitted, of_strands, on_curve, unplayed, varying_count
 from .instances import placed
-from .stage import because, faults, first_time, left_out, open_stage, primvar, space, unused_primvars, world_of
+from .stage import because, faults, first_time, left_out, open_stage, primvar, space, times_of, unused_primvars, world_of
 
 PARTS = ("radii", "groups", "uvs", "colors", "objects", "flags", "closest", "weights")
 """What is read of each strand, besides its factors of the material."""
@@ -33,7 +33,7 @@ def read_curves(path: Path, scale: float | None = None, up: str | None = None) -
     found = placed(stage, UsdGeom.BasisCurves, to, notes)
     if not found:
         raise AbsentError("the stage has no visible BasisCurves" + because(notes))
-    notes += unused_primvars([prim for prim, _ in found])
+    notes += unused_primvars([prim for prim, _ in found]) + unplayed(times_of([prim for prim, _ in found]))
     total = 0
     for prim, places in found:
         curves = UsdGeom.BasisCurves(prim)

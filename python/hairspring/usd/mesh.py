@@ -10,7 +10,7 @@ from pxr import Usd, UsdGeom, UsdSkel
 from ..formats import MAX_POSITIONS, MAX_RATE, MAX_SAMPLES, AbsentError, FormatError, MovingMesh
 from ..shapes import distinct, spacing, triangulate
 from .stage import all_prims, because, faults, instancers, left_out, open_stage, primvar, prims, prototypes, quiet, space
-from .stage import world_of
+from .stage import times_of, world_of
 
 SURFACES = (UsdGeom.NurbsPatch, UsdGeom.Sphere, UsdGeom.Cube, UsdGeom.Cylinder, UsdGeom.Cone, UsdGeom.Capsule, UsdGeom.Plane)
 """Types of surfaces that are not read."""
@@ -21,15 +21,8 @@ def sample_times(stage: Usd.Stage, meshes: list[Usd.Prim], notes: list[str]) -> 
 
     They are as close as the closest two samples, but not closer than 1/240 s and not farther than one time code. A note says if
     samples are closer."""
-    times: set[float] = set()
-    for prim in meshes:
-        times.update(UsdGeom.Mesh(prim).GetPointsAttr().GetTimeSamples())
-        ancestor = prim
-        while ancestor and not ancestor.IsPseudoRoot():
-            times.update(UsdGeom.Xformable(ancestor).GetTimeSamples() if ancestor.IsA(UsdGeom.Xformable) else [])
-            ancestor = ancestor.GetParent()
     rate = float(stage.GetTimeCodesPerSecond())
-    ordered = distinct(times)
+    ordered = distinct(times_of(meshes))
     if len(ordered) < 2:
         return np.zeros(0), rate
     if not (np.isfinite(rate) and rate > 0):

@@ -142,6 +142,18 @@ def first_time(attributes: list[Usd.Attribute]) -> Usd.TimeCode:
     return Usd.TimeCode(min(times)) if times else Usd.TimeCode.Default()
 
 
+def times_of(prims: list[Usd.Prim]) -> set[float]:
+    """The time samples [time codes] of the points of any of these prims, and of the transforms above them."""
+    times: set[float] = set()
+    for prim in prims:
+        times.update(UsdGeom.PointBased(prim).GetPointsAttr().GetTimeSamples())
+        ancestor = prim
+        while ancestor and not ancestor.IsPseudoRoot():
+            times.update(UsdGeom.Xformable(ancestor).GetTimeSamples() if ancestor.IsA(UsdGeom.Xformable) else [])
+            ancestor = ancestor.GetParent()
+    return times
+
+
 def world_of(prim: Usd.Prim, time: Usd.TimeCode, to: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Linear part and translation of a prim's transform, to meters and Y up; for row vectors."""
     return world(UsdGeom.Imageable(prim).ComputeLocalToWorldTransform(time), to)
