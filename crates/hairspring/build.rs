@@ -1,4 +1,8 @@
 //! Tells the library's files whether they are built without optimization.
+//!
+//! Functions of the kernels must be inlined to be compiled for the instruction set of the kernel. Without optimization there is
+//! one instruction set only, and inlining would copy every function to each place that calls it, which takes the compiler
+//! minutes. Functions of more than a dozen lines are thus inlined in optimized builds only.
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");

@@ -85,7 +85,7 @@ impl ColliderPose {
     }
 
     /// Returns which of eight points may be inside at the end of the substep. The others are not.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn broadphase_test<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let d = p - V3::splat(simd, self.bounds.0);
         let near = d.dot(d).simd_le(F::splat(simd, self.bounds.1 * self.bounds.1));
@@ -108,7 +108,7 @@ impl ColliderPose {
     ///   ●─────────●    on a round shape of radius R, a segment of length L is deeper between its ends by at most L²/8R:
     ///  ╱  sag ↕    ╲   if that is less than the tolerance, nothing has to be sampled
     /// ```
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn segment_may_intersect<S: Simd>(
         &self,
         simd: S,
@@ -140,7 +140,7 @@ impl ColliderPose {
                     (p, e),
                     (size, grid.cell()),
                     may,
-                    #[inline(always)]
+                    #[cfg_attr(not(unoptimized), inline(always))]
                     |at| grid.may_be_inside(simd, at),
                 );
                 if may.any_true() && !is_long(simd, grid, e) {
@@ -159,7 +159,7 @@ impl ColliderPose {
 
     /// [`Self::segment_may_intersect`] for segments that end near the surface. Most of these pass a cell that
     /// contains a point inside, so that test is skipped.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(crate) fn segment_may_penetrate<S: Simd>(
         &self,
         simd: S,
@@ -186,7 +186,7 @@ impl ColliderPose {
     ///        ●╌_       _╌●
     ///        ⅓   ╌╌_╌╌    ⅔
     /// ```
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn sdf_segment_test<S: Simd>(
         &self,
         simd: S,
@@ -210,7 +210,7 @@ impl ColliderPose {
 
     /// Returns the segments in `may` for which `holds` is true at one of the samples. The samples are at most
     /// [`SAMPLE_SPACING`] cells of edge `cell` [m] apart.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn between<S: Simd>(
         &self,
         simd: S,
@@ -276,7 +276,7 @@ pub(crate) fn slope<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> (F<S>, V
 }
 
 /// Returns how far the surface at `p` (world, end of the substep) moved in the substep [m].
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> V3<S> {
     let (turned, moved) = &pose.motion;
     let rigid = transform(simd, turned, p - V3::splat(simd, pose.end.1)) + V3::splat(simd, *moved);

@@ -94,7 +94,7 @@ impl<S: Simd> DeepestPoint<S> {
     ///    ╲    │    ╱      The deepest point slides along the segment as that moves, so the depth decreases at this rate, out
     ///     ╲___│___╱       over the wall's rim; along one side's normal it would decrease here and increase farther on
     /// ```
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn between(
         simd: S,
         (convex, found): (bool, Mask<S>),
@@ -145,7 +145,7 @@ const STEEPEST: f32 = 2.0;
 /// tangent. Within a cell of the middle, a field curves the other way only negligibly: this misses five in
 /// ten thousand cuts, none deeper than those missed otherwise. Farther off, the distance decreases by at most
 /// the length of the way.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub(crate) fn find_deepest_point<S: Simd>(
     simd: S,
     pose: &ColliderPose,
@@ -219,7 +219,7 @@ const CONVEX_ERROR: f32 = 1e-4;
 /// and one where it rises, and is no lower than the crossing of their tangents. The crossing is the next
 /// sample (the cutting-plane method of Kelley 1960, in one dimension). A shape much thinner than the segment
 /// cannot hide between samples.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn deepest_convex<S: Simd>(
     simd: S,
     pose: &ColliderPose,

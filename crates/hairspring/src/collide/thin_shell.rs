@@ -282,7 +282,7 @@ impl ThinShell {
     }
 
     /// Returns which of the segments in `may`, from `a` to `a + e`, may have a place inside. The others have none.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub(super) fn segments_may_be_inside<S: Simd>(
         &self,
         simd: S,

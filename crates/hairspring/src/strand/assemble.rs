@@ -79,7 +79,7 @@ impl<S: Simd> SubstepContext<'_, S> {
 }
 
 /// Computes the elastic forces on all points at `scratch.edges` and stores them in `scratch.kick` [N].
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub fn forces<S, M, const B: usize, const N: usize>(
     simd: S,
     step: &SubstepContext<S>,
@@ -128,7 +128,7 @@ impl Linearization {
 }
 
 /// Assembles and eliminates the system from root to tip, linearized at `scratch.edges`.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub fn assemble<S, M, const B: usize, const N: usize>(
     simd: S,
     sweep: Linearization,
@@ -178,7 +178,7 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
 
 /// Adds all elements that begin at the current point i and all forces on point i+1, then eliminates point i.
 /// `phase` is i modulo the model's stride. `driven` is set for the points next to the root.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn pass_point<S, M, const B: usize, const N: usize>(
     simd: S,
     (sweep, i, phase, driven): (Linearization, usize, usize, bool),
@@ -233,7 +233,7 @@ fn eliminate_across<S, M, const B: usize, const N: usize>(
 }
 
 /// Eliminates point i unless the root drives it.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn eliminate<S, M, const B: usize, const N: usize>(
     simd: S,
     (i, driven): (usize, bool),
@@ -261,7 +261,7 @@ fn eliminate<S, M, const B: usize, const N: usize>(
 
 /// Adds all elements that begin at point i, and all forces on point i+1 except those that act on few points.
 /// `phase` is i modulo the model's stride.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn add_point<S, M, const B: usize, const N: usize>(
     simd: S,
     (sweep, i, phase): (Linearization, usize, usize),

@@ -46,7 +46,7 @@ pub fn surface_displacement<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> 
 }
 
 /// See [`collide::find_deepest_point`].
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub fn find_deepest_point<S: Simd>(
     simd: S,
     pose: &ColliderPose,

@@ -45,7 +45,7 @@ pub struct AssemblyCursor<S: Simd> {
 
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
     /// Starts at the root.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub fn begin(
         simd: S,
         sweep: Linearization,
@@ -91,7 +91,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     /// Adds the elements that begin at the next point `i`: those of the model, and the stretch of the
     /// strand's segment from point i+1. `phase` is i modulo the model's stride. The cursor knows both; they
     /// are parameters so that the compiler sees them as constants.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub fn add(&mut self, simd: S, i: usize, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
         let Scratch { edges, fixed, .. } = scratch;
         let Self { band, model, cursor } = self;

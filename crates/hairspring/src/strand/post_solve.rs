@@ -90,14 +90,14 @@ pub fn post_solve_shared<S: Simd>(
     scratch: &mut Scratch,
 ) {
     simd.vectorize(
-        #[inline(always)]
+        #[cfg_attr(not(unoptimized), inline(always))]
         || post_solve(simd, stride, finish, step, tile, scratch),
     );
 }
 
 /// Applies strain limit and contact to every `stride`th particle of the new `scratch.edges`, and writes the
 /// state.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub fn post_solve<S: Simd>(
     simd: S,
     stride: usize,
@@ -206,7 +206,7 @@ pub fn post_solve<S: Simd>(
 
 /// Returns whether point `i` at world position `world`, or the segment `e` that ends there, may be inside a
 /// collider.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn needs_contact_test<S: Simd>(
     simd: S,
     step: &SubstepContext<S>,
@@ -249,12 +249,12 @@ fn resolve_contacts<S: Simd>(
     from: (&Particle<S>, &SegmentLimit<S>, Mask<S>),
 ) -> (V3<S>, Mask<S>) {
     simd.vectorize(
-        #[inline(always)]
+        #[cfg_attr(not(unoptimized), inline(always))]
         || project_particle(simd, finish, step, tile, segment, from),
     )
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn project_particle<S: Simd>(
     simd: S,
     finish: &PostSolveParams,
@@ -388,7 +388,7 @@ impl<S: Simd> Particle<S> {
 }
 
 /// Stores the new edge from `before` to particle `i` and the particle's velocity. Returns the particle.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn write<S: Simd>(
     simd: S,
     finish: &PostSolveParams,

@@ -69,7 +69,7 @@ impl<S: Simd> Projection<S> {
 
     /// Eliminates the segment from point `i` to the strand's next, as in `scratch.edges`. The first segment
     /// is driven by the root and must not be passed.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub fn eliminate(&mut self, simd: S, (stride, i): (usize, usize), tile: &Tile, scratch: &mut Scratch) {
         let Scratch { pulls, edges, fixed, .. } = scratch;
         let length = load(simd, &tile.rest[i][rest::LENGTH]);
@@ -104,7 +104,7 @@ impl<S: Simd> Projection<S> {
     /// Moves the points of the strands in `selected` after all segments have been eliminated, and adds λ times
     /// `force` (a/h² of the integrator) to the tensions. Returns false if all lengths were within tolerance
     /// before, or are now.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub fn move_points(
         self,
         simd: S,

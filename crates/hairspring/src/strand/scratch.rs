@@ -58,7 +58,7 @@ const EDGE_PADDING: usize = 3;
 
 impl Memory {
     /// Returns the scratch memory for a tile of `points`.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     pub fn scratch(&mut self, points: usize) -> Scratch<'_> {
         self.reserve(points);
         Scratch {

@@ -107,7 +107,7 @@ pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize, max: F<S>) -> 
 /// `distance` is the point's distance from the surface before its own correction [m]. Points that are
 /// `caught` are still inside. Segments at a point that passes through the collider are `free`. `before` is the distance of
 /// the inner end from the surface, where that end may be inside [m].
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub fn resolve_segment_contact<S: Simd>(
     simd: S,
     (finish, step, pose): (&PostSolveParams, &SubstepContext<S>, &ColliderPose),
@@ -266,7 +266,7 @@ pub fn resolve_segment_contact<S: Simd>(
 
 /// Returns where the segment from `a` to `a + q` is inside the shape, or past the side that it was on. Places
 /// before the fraction `from` of the segment are ignored.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn cut<S: Simd>(
     simd: S,
     (pose, side): (&ColliderPose, &Option<(&Edges, Side<S>)>),

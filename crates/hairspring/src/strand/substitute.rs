@@ -15,7 +15,7 @@ use crate::simd::lanes::{F, Simd, V3, load, store};
 
 /// The upward sweep. Adds the solution to `scratch.edges`, adds the forces of the stretch springs to the
 /// tensions, and eliminates the new segments for projection.
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub fn substitute<S, M, const B: usize, const N: usize>(
     simd: S,
     (sweep, carried): (Linearization, F<S>),
@@ -72,7 +72,7 @@ struct BackSubstitution<S: Simd, const N: usize> {
 
 impl<S: Simd, const N: usize> BackSubstitution<S, N> {
     /// Solves for point i. `phase` is i modulo the model's stride, and `tip` is set for the last point.
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn pass_point<M: Model<S, B, N>, const B: usize>(
         &mut self,
         simd: S,

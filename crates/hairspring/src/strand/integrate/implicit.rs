@@ -23,7 +23,7 @@ pub struct Implicit;
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B, N> for Implicit {
     const PRODUCTION: bool = true;
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn advance(
         simd: S,
         frame: &FrameContext,
@@ -72,7 +72,7 @@ fn iteration_limit<S: Simd>(simd: S, setting: u32, tile: &Tile) -> F<S> {
 /// f32.
 const NEWTON_TOLERANCE: f32 = 1e-5;
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn solve<S, M, const B: usize, const N: usize>(
     simd: S,
     frame: &FrameContext,
@@ -114,12 +114,12 @@ where
     M: Model<S, B, N>,
 {
     simd.vectorize(
-        #[inline(always)]
+        #[cfg_attr(not(unoptimized), inline(always))]
         || iterate::<S, M, B, N>(simd, frame, step, tile, scratch),
     )
 }
 
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 fn iterate<S, M, const B: usize, const N: usize>(
     simd: S,
     frame: &FrameContext,

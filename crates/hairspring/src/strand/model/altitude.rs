@@ -34,7 +34,7 @@ pub fn flattened<S: Simd>(p: [V3<S>; 3], rest: &[Row]) -> Mask<S> {
 /// Returns the altitude spring of particle `i` and the three after it, with stiffness 0 where their
 /// tetrahedron is not [`flattened`]. `h` is the length of the substep [s], and `drifting` is the time that
 /// velocities act before the starting point of the solve [s].
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub fn across<S: Simd>(
     simd: S,
     (h, drifting): (f32, f32),
@@ -76,7 +76,7 @@ const HEIGHTS: [([usize; 4], bool); 7] = [
 /// Returns the shortest height of a tetrahedron: its unit direction, the coefficient of that direction in the
 /// gradient of the height at each of the four points, and the extension of the height beyond its value at
 /// `volume`, which is six times a volume [m³]. The extension is in [m].
-#[inline(always)]
+#[cfg_attr(not(unoptimized), inline(always))]
 pub fn altitude<S: Simd>(simd: S, x: [V3<S>; 4], volume: F<S>) -> (V3<S>, [F<S>; 4], F<S>) {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let nought = V3::zero(simd);

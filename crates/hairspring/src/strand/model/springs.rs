@@ -77,7 +77,7 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
         altitude::across(simd, times, i, tile, scratch)
     }
 
-    #[inline(always)]
+    #[cfg_attr(not(unoptimized), inline(always))]
     fn add(&mut self, simd: S, at: &At<S>, scratch: &Scratch, tile: &mut Tile, band: &mut Band<S, 3, 12>) {
         let i = at.i;
         let (rest, fixed) = (&tile.rest[i], &scratch.fixed[i]);
