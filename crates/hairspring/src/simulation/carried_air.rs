@@ -3,9 +3,9 @@
 //! A point that the share e of the outer air reaches (`exposure.rs`) moves relative to the air at
 //!
 //! ```text
-//! u = e w + (1 − e) (V + ½ (v − v₀)) − v      w: the air outside the hair        v, v₀: velocity of the point, now and at the start of
-//!                                             V: mean velocity around it, at the start of the frame                        the frame
-//!   = s (w + δ − v),   s = ½ (1 + e)          s: `rest::SLIP`        δ: `wind_delta`
+//! u = e w + (1 − e) (V + ½ (v − v₀)) − v      w: velocity of the air outside the hair      v: velocity of the point
+//!                                             V, v₀: mean velocity around the point, and its own, at the start of the frame
+//!   = s (w + δ − v),   s = ½ (1 + e)          s: `rest::SLIP`                              δ: `wind_delta`
 //! ```
 //!
 //! A head of hair that moves as one thus has little drag, while a hair that moves relative to its neighbors has that of a lone
@@ -52,6 +52,18 @@ struct Cell {
     points: Vec<(u32, u8, f32)>,
     /// The mean of the positions at rest [m].
     middle: Vec3,
+}
+
+impl Cell {
+    /// The mean velocity of its points [m/s].
+    fn velocity(&self, points: &[StateRows]) -> Vec3 {
+        let velocity = |row: u32, lane: u8| {
+            let v = Vec3::from([0, 1, 2].map(|k| points[row as usize][state::V + k].0[lane as usize]));
+            // A strand that is reset because it is not finite does not spread.
+            if v.is_finite() { v } else { Vec3::ZERO }
+        };
+        self.points.iter().map(|&(row, lane, weight)| velocity(row, lane) * weight).sum()
+    }
 }
 
 /// Returns the share of slip of a point that the share `exposure` of the outer air reaches [1].
@@ -114,18 +126,6 @@ pub(super) struct AirInHair {
     velocities: Vec<Vec3>,
     /// Rotation of the hair [rad/s].
     spin: Vec3,
-}
-
-impl Cell {
-    /// The mean velocity of its points [m/s].
-    fn velocity(&self, points: &[StateRows]) -> Vec3 {
-        let velocity = |row: u32, lane: u8| {
-            let v = Vec3::from([0, 1, 2].map(|k| points[row as usize][state::V + k].0[lane as usize]));
-            // A strand that is reset because it is not finite does not spread.
-            if v.is_finite() { v } else { Vec3::ZERO }
-        };
-        self.points.iter().map(|&(row, lane, weight)| velocity(row, lane) * weight).sum()
-    }
 }
 
 impl AirInHair {

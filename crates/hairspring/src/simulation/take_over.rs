@@ -12,7 +12,7 @@
 //!                                        between those and the truss, the tensions of the rest shape
 //! ```
 
-use super::{Simulation, strand_ref::StrandRef};
+use super::{Simulation, carried_air::CarriedAir, strand_ref::StrandRef};
 use crate::{
     settings::Integrator,
     simd::lanes::{LANES, Row},
@@ -73,6 +73,11 @@ impl Simulation {
         }
         if let (Some(neighbours), Some(old)) = (&mut self.neighbours, &old.neighbours) {
             neighbours.set_contacts(old.contacts());
+        }
+        // The shares of slip are those of the old simulation.
+        if !self.model.carried_air.is_empty() || !old.model.carried_air.is_empty() {
+            let model = Arc::make_mut(&mut self.model);
+            model.carried_air = CarriedAir::new(model);
         }
         self.take_over_manipulators(old, &lanes);
     }
