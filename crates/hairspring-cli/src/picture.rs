@@ -105,9 +105,9 @@ pub struct Studio {
     painter: Painter,
     /// The camera at the start.
     start: Camera,
-    /// The part of a full turn about its target that it has made, see [`Studio::turn`].
+    /// Current rotation of the camera about its target, in full turns; see [`Studio::turn`].
     turned: f32,
-    /// The path that it moves along; empty for a camera that does not follow the hair.
+    /// Path of a camera that follows the hair; empty for other cameras.
     path: SubjectPath,
     width_scale: f32,
     picture: Picture,

@@ -65,7 +65,7 @@ pub struct View {
     pub orbit: Option<Orbit>,
     /// Whether the camera moves along with the hair.
     pub follow: bool,
-    /// How far it has moved along [m].
+    /// Displacement of the subject from its start in the last picture [m].
     followed: Vec3,
     /// The current tool.
     pub tool: Tool,
@@ -181,7 +181,7 @@ impl View {
         self.set(&own.unwrap_or_else(|| frame_camera(bounds, aspect.max(NARROW))));
     }
 
-    /// Takes over a camera of a scene, which is where it is at the start.
+    /// Sets the view to a camera of the scene, as it is at the start of the scene.
     fn set(&mut self, camera: &Camera) {
         (self.orbit, self.followed) = (Some(Orbit::new(camera)), Vec3::ZERO);
     }

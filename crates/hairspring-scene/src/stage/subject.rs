@@ -22,7 +22,7 @@ const SAMPLES: usize = 2_000;
 const PATH_RATE: f64 = 30.0;
 const PATH_SAMPLES: f64 = 6_000.0;
 
-/// Halvings of a sample's interval that give the time of a cut in it.
+/// Bisection steps that find the time of a cut between two samples.
 const HALVINGS: usize = 24;
 
 /// Maximum number of roots whose mean is the path of the subject.
@@ -45,7 +45,7 @@ type Bounds = (Vec3, Vec3);
 pub struct Subject {
     /// The box (min, max) [m] that holds the subject over the whole motion, with a margin.
     pub bounds: (Vec3, Vec3),
-    /// The box (min, max) [m] that holds it if the box moves along the path, where it is at the start.
+    /// The box (min, max) [m] at the start that holds the subject at all times, if it moves along the path.
     pub moving_bounds: (Vec3, Vec3),
     /// The path of the subject.
     pub path: SubjectPath,

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
-/// Time before and after each moment over which its position is averaged, twice [s]: a camera that follows a walk does not
-/// bob with its steps.
+/// Half the window of the moving average, which is applied twice [s]. It is longer than a step, so that a camera that follows
+/// a walk does not move up and down with each step.
 const SMOOTHING: f64 = 0.5;
 
 /// Tolerance of the time of a cut [s].
@@ -11,7 +11,8 @@ const SAME_TIME: f64 = 1e-6;
 
 /// How far the roots of the hair have moved since the start, on a smoothed path.
 ///
-/// At the start, at the end and beside a cut it is the motion itself. A steady motion is not changed by the smoothing.
+/// The window of the average shrinks toward the start, the end and each cut, where the path equals the motion. A motion of
+/// constant velocity is not changed.
 ///
 /// ```
 /// use glam::Vec3;
@@ -72,13 +73,13 @@ impl SubjectPath {
     }
 }
 
-/// The mean of each position and as many before it as after it, at most `reach`.
+/// Moving average of the positions: of each one with up to `reach` on either side, the same number before it as after it.
 fn smoothed(positions: &[Vec3], reach: usize) -> Vec<Vec3> {
     let end = positions.len();
     let mean = |k: usize| {
         let reach = reach.min(k).min(end - 1 - k);
         let around = &positions[k - reach..=k + reach];
-        // Relative to one of them, so that what rests stays exactly where it is.
+        // The differences are averaged, so that a position at rest is exact.
         let sum: Vec3 = around.iter().map(|p| *p - positions[k]).sum();
         positions[k] + sum / around.len() as f32
     };

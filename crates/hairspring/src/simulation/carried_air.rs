@@ -11,8 +11,8 @@
 //! A head of hair that moves as one thus has little drag, while a hair that moves relative to its neighbors has that of a lone
 //! hair. If the inner hair had only e times the drag, each hair would swing by itself for half a minute.
 //!
-//! V is the mean in a cell at rest, weighted by length, multiplicity and 1 − e. The drag against it then takes momentum from no
-//! cell. Inside the cell, V turns with the hair's root. Within a frame, the air follows half of the change of a point's velocity. If it
+//! V is the mean in a cell of the groom at rest, weighted by length, multiplicity and 1 − e, so the drag against it hardly changes
+//! the momentum of the cell. Inside the cell, V rotates with the hair's root. Within a frame, the air follows half of the change of a point's velocity. If it
 //! followed all of it, fast vibrations could gain energy; if it followed none, it would hold back hair that speeds up.
 //!
 //! # Limitations
