@@ -51,19 +51,10 @@ fn follow_links(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many symbolic links lead on from it"))
 }
 
-/// Returns whether `target` is a device, such as `/dev/null`, which must not be replaced.
-fn is_device(target: &Path) -> bool {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt;
-        let kind = std::fs::metadata(target).map(|there| there.file_type());
-        kind.is_ok_and(|kind| kind.is_char_device() || kind.is_block_device())
-    }
-    #[cfg(not(unix))]
-    {
-        let _ = target;
-        false
-    }
+/// Returns whether `target` is a pipe, a socket or a device, such as `/dev/null`. None of these must be replaced: a
+/// program that reads from a pipe would wait forever.
+fn is_special(target: &Path) -> bool {
+    std::fs::metadata(target).is_ok_and(|there| !there.is_file() && !there.is_dir())
 }
 
 /// Returns the permissions of an existing file; `None` for a new one. Only Unix can pass them on to another file.
@@ -87,11 +78,11 @@ impl PendingFile {
     /// replaces, or those of a new file.
     ///
     /// # Errors
-    /// Returns the error of the system, or an error for a device or after [`remove_pending_files`].
+    /// Returns the error of the system, or an error for a pipe, a socket, a device, or after [`remove_pending_files`].
     pub fn create(target: &Path) -> io::Result<Self> {
         let target = follow_links(target)?;
-        if is_device(&target) {
-            return Err(io::Error::other("it is a device; name a file"));
+        if is_special(&target) {
+            return Err(io::Error::other("it is a pipe, a socket or a device; name a file"));
         }
         let permissions = permissions_of(&target);
         let mut builder = tempfile::Builder::new();

@@ -75,6 +75,12 @@ fn complete_or_absent() {
         std::os::unix::fs::symlink("/dev/null", &device).unwrap();
         assert!(write_atomically(&device, |_| Ok(())).unwrap_err().to_string().contains("a device"));
         std::fs::remove_file(device).unwrap();
+        // Neither is a socket, which stands for a pipe here: the standard library creates no pipe with a name.
+        let socket = folder.path().join("socket");
+        let listener = std::os::unix::net::UnixListener::bind(&socket).unwrap();
+        assert!(write_atomically(&socket, |_| Ok(())).unwrap_err().to_string().contains("a socket"));
+        drop(listener);
+        std::fs::remove_file(socket).unwrap();
         let around = folder.path().join("around");
         std::os::unix::fs::symlink("around", &around).unwrap();
         assert!(write_atomically(&around, |_| Ok(())).unwrap_err().to_string().contains("symbolic links"));
