@@ -176,7 +176,7 @@ impl Hull {
     }
 
     /// [`Hull::distance_and_normal`] for eight points.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub(super) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let (mut most, mut normal) = (F::<S>::splat(simd, f32::MIN), V3::zero(simd));
         for face in &self.faces {
@@ -237,7 +237,7 @@ fn joggled(points: &[Vec3], size: f32) -> Vec<Vec3> {
 
 /// Returns the vector from the nearest point of a triangle to each of eight points, which are at `height`
 /// along its unit normal `n`.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn from_triangle<S: Simd>(simd: S, p: V3<S>, corners: &[Vec3; 3], (n, height): (V3<S>, F<S>)) -> V3<S> {
     let (mut best, mut way) = (F::<S>::splat(simd, f32::MAX), n * height);
     let mut over = F::<S>::splat(simd, f32::MIN);

@@ -63,7 +63,7 @@ impl Lattice {
     }
 
     /// [`Lattice::locate`] for eight points. Cells are returned by their index.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn locate_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (V3<S>, [usize; LANES], V3<S>) {
         let (top, last) = (self.top, self.last);
         let g = (p - V3::splat(simd, self.origin)) * F::splat(simd, 1.0 / self.cell);

@@ -85,7 +85,7 @@ impl ColliderPose {
     }
 
     /// Returns which of eight points may be inside at the end of the substep. The others are not.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub(crate) fn broadphase_test<S: Simd>(&self, simd: S, p: V3<S>) -> Mask<S> {
         let d = p - V3::splat(simd, self.bounds.0);
         let near = d.dot(d).simd_le(F::splat(simd, self.bounds.1 * self.bounds.1));
@@ -100,7 +100,7 @@ impl ColliderPose {
         }
     }
 
-    /// Returns which of eight segments may have an interior point that is deeper than `sag` [m] and than both
+    /// Returns which of eight segments may have an interior point that is deeper than `tolerance` [m] and than both
     /// ends. The segments end at `p` (world) and have the edge vector `e`. The others have no such point that
     /// matters.
     ///
@@ -108,16 +108,16 @@ impl ColliderPose {
     ///   ●─────────●    on a round shape of radius R, a segment of length L is deeper between its ends by at most L²/8R:
     ///  ╱  sag ↕    ╲   if that is less than the tolerance, nothing has to be sampled
     /// ```
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub(crate) fn segment_may_intersect<S: Simd>(
         &self,
         simd: S,
         (p, e): (V3<S>, V3<S>),
-        sag: F<S>,
+        tolerance: F<S>,
     ) -> Mask<S> {
         let none = Mask::splat(simd, false);
         let size = e.dot(e);
-        let mut may = size.simd_gt(sag * (8.0 * self.shape.roundness()));
+        let mut may = size.simd_gt(tolerance * (8.0 * self.shape.roundness()));
         if !may.any_true() {
             return none;
         }
@@ -140,11 +140,11 @@ impl ColliderPose {
                     (p, e),
                     (size, grid.cell()),
                     may,
-                    #[cfg_attr(not(unoptimized), inline(always))]
+                    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
                     |at| grid.may_be_inside(simd, at),
                 );
                 if may.any_true() && !is_long(simd, grid, e) {
-                    may & self.sdf_segment_test(simd, grid, (p, e), sag)
+                    may & self.sdf_segment_test(simd, grid, (p, e), tolerance)
                 } else {
                     may
                 }
@@ -158,23 +158,26 @@ impl ColliderPose {
     }
 
     /// [`Self::segment_may_intersect`] for segments that end near the surface. Most of these pass a cell that
-    /// contains a point inside, so that test is skipped.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    /// contains a point inside, so that test is skipped. Not inlined: all kernels share one copy.
+    #[inline(never)]
     pub(crate) fn segment_may_penetrate<S: Simd>(
         &self,
         simd: S,
         (p, e): (V3<S>, V3<S>),
-        sag: F<S>,
+        tolerance: F<S>,
     ) -> Mask<S> {
-        match &self.shape {
-            ColliderShape::Field(grid) if !is_long(simd, grid, e) => {
-                self.sdf_segment_test(simd, grid, (p, e), sag)
-            }
-            _ => self.segment_may_intersect(simd, (p, e), sag),
-        }
+        simd.vectorize(
+            #[cfg_attr(not(any(test, unoptimized)), inline(always))]
+            || match &self.shape {
+                ColliderShape::Field(grid) if !is_long(simd, grid, e) => {
+                    self.sdf_segment_test(simd, grid, (p, e), tolerance)
+                }
+                _ => self.segment_may_intersect(simd, (p, e), tolerance),
+            },
+        )
     }
 
-    /// Returns which of eight segments may be deeper than `sag` [m] in a field. The segments end at `p`
+    /// Returns which of eight segments may be deeper than `tolerance` [m] in a field. The segments end at `p`
     /// (world) and have the edge vector `e`. The test uses distance and slope at both thirds: for a convex
     /// shape, the distance along the segment lies above its tangents. (The ends are outside, or handled by
     /// the contacts of points.) On a smooth body this rejects most segments that lie on the surface, since
@@ -186,13 +189,29 @@ impl ColliderPose {
     ///        ●╌_       _╌●
     ///        ⅓   ╌╌_╌╌    ⅔
     /// ```
-    #[cfg_attr(not(unoptimized), inline(always))]
+    ///
+    /// Not inlined: all kernels share one copy.
+    #[inline(never)]
     fn sdf_segment_test<S: Simd>(
         &self,
         simd: S,
         grid: &SignedDistanceField,
+        segments: (V3<S>, V3<S>),
+        tolerance: F<S>,
+    ) -> Mask<S> {
+        simd.vectorize(
+            #[cfg_attr(not(any(test, unoptimized)), inline(always))]
+            || self.sample_thirds(simd, grid, segments, tolerance),
+        )
+    }
+
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
+    fn sample_thirds<S: Simd>(
+        &self,
+        simd: S,
+        grid: &SignedDistanceField,
         (p, e): (V3<S>, V3<S>),
-        sag: F<S>,
+        tolerance: F<S>,
     ) -> Mask<S> {
         let (p, e) = (self.local(simd, p), transform(simd, &self.end.0.transpose(), e));
         let [third, two] = [1.0 / 3.0, 2.0 / 3.0].map(|part| F::<S>::splat(simd, part));
@@ -201,16 +220,16 @@ impl ColliderPose {
         let (outer, rise) = grid.slope_lanes(simd, p - e * third);
         let up = rise.dot(e);
         let [first, last] = [inner - down * third, outer + up * third];
-        let ends = first.min(inner).min(outer).min(last).simd_lt(-sag);
+        let ends = first.min(inner).min(outer).min(last).simd_lt(-tolerance);
         // Depth where the tangents cross; both sides are multiplied by the change of slope.
         let crossing = first * up - (outer - up * two) * down;
-        let between = down.simd_lt(0.0) & up.simd_gt(0.0) & crossing.simd_lt((down - up) * sag);
+        let between = down.simd_lt(0.0) & up.simd_gt(0.0) & crossing.simd_lt((down - up) * tolerance);
         ends | between
     }
 
     /// Returns the segments in `may` for which `holds` is true at one of the samples. The samples are at most
     /// [`SAMPLE_SPACING`] cells of edge `cell` [m] apart.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn between<S: Simd>(
         &self,
         simd: S,
@@ -276,7 +295,7 @@ pub(crate) fn slope<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> (F<S>, V
 }
 
 /// Returns how far the surface at `p` (world, end of the substep) moved in the substep [m].
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub(crate) fn surface_displacement<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> V3<S> {
     let (turned, moved) = &pose.motion;
     let rigid = transform(simd, turned, p - V3::splat(simd, pose.end.1)) + V3::splat(simd, *moved);

@@ -238,7 +238,7 @@ impl SignedDistanceField {
     }
 
     /// Returns the distance [m] and its gradient per cell [m].
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn between_nodes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         let (out, index, along) = self.lattice.locate_lanes(simd, p);
         let k = self.corners_lanes(simd, index);

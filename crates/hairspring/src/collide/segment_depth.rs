@@ -94,7 +94,7 @@ impl<S: Simd> DeepestPoint<S> {
     ///    ╲    │    ╱      The deepest point slides along the segment as that moves, so the depth decreases at this rate, out
     ///     ╲___│___╱       over the wall's rim; along one side's normal it would decrease here and increase farther on
     /// ```
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn between(
         simd: S,
         (convex, found): (bool, Mask<S>),
@@ -145,16 +145,32 @@ const STEEPEST: f32 = 2.0;
 /// tangent. Within a cell of the middle, a field curves the other way only negligibly: this misses five in
 /// ten thousand cuts, none deeper than those missed otherwise. Farther off, the distance decreases by at most
 /// the length of the way.
-#[cfg_attr(not(unoptimized), inline(always))]
+///
+/// Not inlined: all kernels share one copy.
+#[inline(never)]
 pub(crate) fn find_deepest_point<S: Simd>(
     simd: S,
     pose: &ColliderPose,
-    (a, e): (V3<S>, V3<S>),
+    segments: (V3<S>, V3<S>),
     (from, within): (F<S>, F<S>),
 ) -> Option<DeepestPoint<S>> {
-    if pose.shape.is_convex() {
-        return deepest_convex(simd, pose, (a, e), (from, within));
-    }
+    simd.vectorize(
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
+        || match pose.shape.is_convex() {
+            true => deepest_convex(simd, pose, segments, (from, within)),
+            false => deepest_sampled(simd, pose, segments, within),
+        },
+    )
+}
+
+/// [`find_deepest_point`] for a shape that may be concave.
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
+fn deepest_sampled<S: Simd>(
+    simd: S,
+    pose: &ColliderPose,
+    (a, e): (V3<S>, V3<S>),
+    within: F<S>,
+) -> Option<DeepestPoint<S>> {
     let splat = |x: f32| F::<S>::splat(simd, x);
     let (l, u) = e.length_and_unit();
     let spacing = match &pose.shape {
@@ -219,7 +235,7 @@ const CONVEX_ERROR: f32 = 1e-4;
 /// and one where it rises, and is no lower than the crossing of their tangents. The crossing is the next
 /// sample (the cutting-plane method of Kelley 1960, in one dimension). A shape much thinner than the segment
 /// cannot hide between samples.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn deepest_convex<S: Simd>(
     simd: S,
     pose: &ColliderPose,

@@ -217,7 +217,7 @@ impl ColliderShape {
     }
 
     /// [`ColliderShape::distance_and_normal`] for eight points.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub(super) fn distance_lanes<S: Simd>(&self, simd: S, p: V3<S>) -> (F<S>, V3<S>) {
         match self {
             ColliderShape::Sphere { center, radius } => ball_lanes(p - V3::splat(simd, *center), *radius),
@@ -263,7 +263,7 @@ pub(super) fn ball_lanes<S: Simd>(d: V3<S>, radius: f32) -> (F<S>, V3<S>) {
 
 /// Returns the distance and normal of a box around the origin: from its faces, edges and corners outside, and
 /// through the nearest face inside.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn cuboid_lanes<S: Simd>(simd: S, l: V3<S>, half: Vec3) -> (F<S>, V3<S>) {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let q = V3 { x: l.x.abs() - half.x, y: l.y.abs() - half.y, z: l.z.abs() - half.z };

@@ -116,7 +116,7 @@ impl Edges {
     }
 
     /// Returns the sides of segments in the shape's own space.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn side_in<S: Simd>(&self, simd: S, (a, e): (V3<S>, V3<S>), deep: F<S>) -> Side<S> {
         let least = e.dot(e).sqrt() * STEEP;
         let mut widest = -deep;
@@ -141,7 +141,7 @@ impl Edges {
 
     /// Finds the segments from `a` to `a + e` (world) that, at the end of the substep, have passed their edge
     /// coming from `side`, or are nearer to it than `within` [m].
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn past<S: Simd>(
         &self,
         simd: S,

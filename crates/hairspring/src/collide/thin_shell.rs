@@ -281,14 +281,23 @@ impl ThinShell {
         load(simd, &Row(std::array::from_fn(|lane| f32::from(may(lane))))).simd_gt(0.0)
     }
 
-    /// Returns which of the segments in `may`, from `a` to `a + e`, may have a place inside. The others have none.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    /// Returns which of the segments in `may`, from `a` to `a + e`, may have a place inside. The others have none. Not
+    /// inlined: all kernels share one copy.
+    #[inline(never)]
     pub(super) fn segments_may_be_inside<S: Simd>(
         &self,
         simd: S,
-        (a, e): (V3<S>, V3<S>),
+        segments: (V3<S>, V3<S>),
         may: Mask<S>,
     ) -> Mask<S> {
+        simd.vectorize(
+            #[cfg_attr(not(any(test, unoptimized)), inline(always))]
+            || self.sample_segments(simd, segments, may),
+        )
+    }
+
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
+    fn sample_segments<S: Simd>(&self, simd: S, (a, e): (V3<S>, V3<S>), may: Mask<S>) -> Mask<S> {
         // A cell lists all triangles within reach of it. A place inside is within the thickness of one, and no
         // farther from a sample than half of their spacing.
         let spacing = 2.0 * (REACH - 1.0) * self.thickness;
@@ -317,6 +326,7 @@ impl ThinShell {
     }
 
     /// Returns whether the line between `ends` [m] may come within the thickness of a triangle that `cell` lists.
+    #[inline(never)]
     fn may_touch(&self, cell: usize, ends: [Vec3; 2]) -> bool {
         let near = NEAR_PLANE * self.thickness;
         self.listed(cell).iter().any(|&t| !self.misses_plane(t as usize, ends, near))

@@ -233,7 +233,7 @@ impl Bench {
     /// Computes exact distances from the triangle to the nodes of layer `z` in its band, eight nodes of a row
     /// at a time: the distance to the plane if the node projects onto the triangle, else that to the nearest
     /// edge.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn measure<S: Simd>(&mut self, simd: S, flat: &Flat, z: usize, size: UVec3) {
         let stride = size.x as usize + LANES;
         let [columns, rows, _] = flat.near(size);

@@ -2,8 +2,8 @@
 //! right one is chosen at run time.
 //!
 //! Compiling the kernels takes most of the build time. Builds that need not be fast have them for one instruction set
-//! ([`only`]): builds without optimization (`unoptimized`, see `build.rs`), such as an engine's first one, and the
-//! library's own unit tests. Tests outside the library check that the results agree on every instruction set.
+//! ([`only`]), and their longer functions are not inlined: builds without optimization (`unoptimized`, see `build.rs`), such
+//! as an engine's first one, and the library's own unit tests. Tests outside the library check that the results agree on every instruction set.
 
 /// Runs an expression with the instructions of `level`, in single precision; see
 /// [`fearless_simd::dispatch!`].
@@ -129,16 +129,10 @@ macro_rules! dispatch_double {
     };
 }
 
-/// The instructions of a build without optimization, whatever the level: every processor has them.
-#[cfg(all(unoptimized, target_arch = "x86_64"))]
+/// The instructions of a build for one instruction set, whatever the level: every processor has them.
+#[cfg(all(any(test, unoptimized), target_arch = "x86_64"))]
 pub(crate) fn only(level: fearless_simd::Level) -> fearless_simd::x86::Sse2 {
     level.as_sse2().expect("SSE2 is part of x86-64")
-}
-
-/// The instructions of the library's own unit tests, whatever the level.
-#[cfg(all(test, not(unoptimized), target_arch = "x86_64"))]
-pub(crate) fn only(level: fearless_simd::Level) -> fearless_simd::x86::Avx2 {
-    level.as_avx2().expect("a processor with AVX2, which the library's unit tests are compiled for")
 }
 
 #[cfg(all(target_arch = "x86_64", not(one_lane)))]

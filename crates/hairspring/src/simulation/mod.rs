@@ -274,13 +274,13 @@ impl Simulation {
 }
 
 /// Instruction sets of this processor, the best first. SSE4.2 is omitted: its kernels gave bitwise the same
-/// results as those of SSE2 and were slower. A build without optimization has kernels for SSE2 only.
+/// results as those of SSE2 and were slower. Builds for one instruction set (`simd::dispatch`) have kernels for SSE2 only.
 fn levels() -> impl Iterator<Item = Level> {
     let best = Level::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     let levels = [
-        best.as_avx512().map(Level::Avx512).filter(|_| cfg!(not(unoptimized))),
-        best.as_avx2().map(Level::Avx2).filter(|_| cfg!(not(unoptimized))),
+        best.as_avx512().map(Level::Avx512).filter(|_| cfg!(not(any(test, unoptimized)))),
+        best.as_avx2().map(Level::Avx2).filter(|_| cfg!(not(any(test, unoptimized)))),
         best.as_sse2().map(Level::Sse2),
     ];
     #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]

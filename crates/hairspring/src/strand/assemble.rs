@@ -79,7 +79,7 @@ impl<S: Simd> SubstepContext<'_, S> {
 }
 
 /// Computes the elastic forces on all points at `scratch.edges` and stores them in `scratch.kick` [N].
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn forces<S, M, const B: usize, const N: usize>(
     simd: S,
     step: &SubstepContext<S>,
@@ -128,7 +128,7 @@ impl Linearization {
 }
 
 /// Assembles and eliminates the system from root to tip, linearized at `scratch.edges`.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn assemble<S, M, const B: usize, const N: usize>(
     simd: S,
     sweep: Linearization,
@@ -140,22 +140,18 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     let n = tile.rest.len();
-    let mut elements = Elements::<S, M, B, N>::begin(simd, sweep, step, tile, scratch);
     let has_external_terms = external::any(tile);
-    let first = M::DRIVEN.next_multiple_of(M::STRIDE);
     // The driven points and the tip are handled outside the loop, so that the loop has no special cases.
-    for i in 0..first {
-        pass_point(
-            simd,
-            (sweep, i, i % M::STRIDE, true),
-            step,
-            tile,
-            scratch,
-            &mut elements,
-            has_external_terms,
-        );
-    }
-    let mut i = first;
+    let suspended = pass_driven_points::<S, M, B, N>(
+        simd,
+        sweep,
+        step,
+        &mut tile.reborrow(),
+        &mut scratch.reborrow(),
+        has_external_terms,
+    );
+    let mut elements = Elements::<S, M, B, N>::resume(simd, suspended);
+    let mut i = first_in_loop::<S, M, B, N>();
     // Not `i + STRIDE < n`: from that, the compiler cannot infer that i + 1 is below n.
     while i < n.saturating_sub(M::STRIDE) {
         pass_point(simd, (sweep, i, 0, false), step, tile, scratch, &mut elements, has_external_terms);
@@ -176,9 +172,53 @@ pub fn assemble<S, M, const B: usize, const N: usize>(
     elements.band.eliminate(simd, M::PROFILE, n - 1, scratch.factors);
 }
 
+/// Index of the first point that the root does not drive.
+#[inline(always)]
+pub fn first_in_loop<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize>() -> usize {
+    M::DRIVEN.next_multiple_of(M::STRIDE)
+}
+
+/// Starts the sweep, and passes the points that the root drives.
+///
+/// Not inlined: once a strand, a call costs nothing, and the few points would be most of the kernel's code.
+#[inline(never)]
+fn pass_driven_points<S, M, const B: usize, const N: usize>(
+    simd: S,
+    sweep: Linearization,
+    step: &SubstepContext<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+    has_external_terms: bool,
+) -> (M, AssemblyCursor<S>)
+where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    simd.vectorize(
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
+        || {
+            let mut elements = Elements::<S, M, B, N>::begin(simd, sweep, step, tile, scratch);
+            // The number of points is not a constant, so that the loop is not unrolled. No strand has fewer.
+            let count = first_in_loop::<S, M, B, N>().min(tile.rest.len() - 1);
+            for i in 0..count {
+                pass_point(
+                    simd,
+                    (sweep, i, i % M::STRIDE, true),
+                    step,
+                    tile,
+                    scratch,
+                    &mut elements,
+                    has_external_terms,
+                );
+            }
+            elements.suspend()
+        },
+    )
+}
+
 /// Adds all elements that begin at the current point i and all forces on point i+1, then eliminates point i.
 /// `phase` is i modulo the model's stride. `driven` is set for the points next to the root.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn pass_point<S, M, const B: usize, const N: usize>(
     simd: S,
     (sweep, i, phase, driven): (Linearization, usize, usize, bool),
@@ -203,17 +243,17 @@ fn pass_point<S, M, const B: usize, const N: usize>(
         );
     }
     // Evaluated before `add_point`, so that the data it loads is in the cache for what follows.
-    let acts_across = M::acts_across(simd, i, tile, scratch);
+    let has_altitude_spring = M::has_altitude_spring(simd, i, tile, scratch);
     add_point(simd, (sweep, i, phase), step, tile, scratch, elements);
     eliminate(simd, (i, driven), scratch, elements);
-    if acts_across {
-        eliminate_across::<S, M, B, N>(simd, (sweep, step), i, tile, &mut scratch.reborrow());
+    if has_altitude_spring {
+        eliminate_altitude_spring::<S, M, B, N>(simd, (sweep, step), i, tile, &mut scratch.reborrow());
     }
 }
 
 /// Eliminates the force of the spring that spans the four points from `i` on.
 #[inline(never)]
-fn eliminate_across<S, M, const B: usize, const N: usize>(
+fn eliminate_altitude_spring<S, M, const B: usize, const N: usize>(
     simd: S,
     (sweep, step): (Linearization, &SubstepContext<S>),
     i: usize,
@@ -226,14 +266,14 @@ fn eliminate_across<S, M, const B: usize, const N: usize>(
     simd.vectorize(
         #[inline(always)]
         || {
-            let across = M::across(simd, (step.h, sweep.prediction_time(step.h)), i, tile, scratch);
-            scratch.across.push(across.eliminate(simd, M::PROFILE, i, scratch.factors));
+            let spring = M::altitude_spring(simd, (step.h, sweep.prediction_time(step.h)), i, tile, scratch);
+            scratch.altitude_springs.push(spring.eliminate(simd, M::PROFILE, i, scratch.factors));
         },
     );
 }
 
 /// Eliminates point i unless the root drives it.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn eliminate<S, M, const B: usize, const N: usize>(
     simd: S,
     (i, driven): (usize, bool),
@@ -261,7 +301,7 @@ fn eliminate<S, M, const B: usize, const N: usize>(
 
 /// Adds all elements that begin at point i, and all forces on point i+1 except those that act on few points.
 /// `phase` is i modulo the model's stride.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn add_point<S, M, const B: usize, const N: usize>(
     simd: S,
     (sweep, i, phase): (Linearization, usize, usize),

@@ -88,7 +88,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 
     /// Adds the [pending rows](Band::store_pending) of the strand's `i`th point to the window's first point.
     /// [`Band::eliminate`] does this itself.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn load_pending(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let rows = profile.rows();
         let ahead = &mut factors[(i + Profile::<B, N>::REACH) * rows..][..rows];
@@ -108,7 +108,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     /// Stores the window's entries for `points`, counted from the window's first, where the factors of those
     /// points will be, and adds the entries that were stored there before. The rows `ahead` begin with those
     /// of the next point.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn store_pending(&self, simd: S, profile: Profile<B, N>, points: Range<usize>, ahead: &mut [Work]) {
         let add = |value: F<S>, row: &mut Work, before: bool| {
             store(if before { value + load(simd, row) } else { value }, row);
@@ -181,7 +181,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
     /// The factors of the point follow in `factors` on those of the points before it. `factors` begins with
     /// zeros for twice [`Profile::REACH`] points. The first half stands for the missing points before the
     /// root, the second for points without pending entries.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     #[allow(clippy::needless_range_loop, reason = "columns count in the row and in the factors")]
     pub fn eliminate(&mut self, simd: S, profile: Profile<B, N>, i: usize, factors: &mut [Work]) {
         let minus_one = F::<S>::splat(simd, -1.0);
@@ -293,7 +293,7 @@ impl<S: Simd, const B: usize, const N: usize> Band<S, B, N> {
 
 /// One step of the upward sweep: solves for the unknowns of a point and puts them in `x`, before those of the
 /// points after it.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
     simd: S,
     profile: Profile<B, N>,

@@ -65,7 +65,7 @@ impl<S: Simd> BorderedConstraint<S> {
 
     /// Eliminates the spring's force. Point `i`, the first of the four, must have been
     /// [eliminated](super::band::Band::eliminate) or [skipped](super::band::Band::skip_row).
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn eliminate<const B: usize, const N: usize>(
         &self,
         simd: S,
@@ -119,7 +119,7 @@ impl<S: Simd> BorderedConstraint<S> {
 impl Eliminated {
     /// Computes the spring's force from the unknowns of the three points after it, and subtracts its effect
     /// from the right-hand side of its own point.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn back_substitute<S: Simd, const B: usize, const N: usize>(
         &self,
         simd: S,

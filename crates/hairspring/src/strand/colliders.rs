@@ -16,9 +16,12 @@ pub fn segment_may_intersect<S: Simd>(
     simd: S,
     pose: &ColliderPose,
     (p, e): (V3<S>, V3<S>),
-    sag: F<S>,
+    tolerance: F<S>,
 ) -> Mask<S> {
-    Mask::from_single(simd, pose.segment_may_intersect(simd.single(), (p.single(), e.single()), sag.single()))
+    Mask::from_single(
+        simd,
+        pose.segment_may_intersect(simd.single(), (p.single(), e.single()), tolerance.single()),
+    )
 }
 
 /// See [`ColliderPose::segment_may_penetrate`].
@@ -27,9 +30,12 @@ pub fn segment_may_penetrate<S: Simd>(
     simd: S,
     pose: &ColliderPose,
     (p, e): (V3<S>, V3<S>),
-    sag: F<S>,
+    tolerance: F<S>,
 ) -> Mask<S> {
-    Mask::from_single(simd, pose.segment_may_penetrate(simd.single(), (p.single(), e.single()), sag.single()))
+    Mask::from_single(
+        simd,
+        pose.segment_may_penetrate(simd.single(), (p.single(), e.single()), tolerance.single()),
+    )
 }
 
 /// See [`collide::contact`].
@@ -46,7 +52,7 @@ pub fn surface_displacement<S: Simd>(simd: S, pose: &ColliderPose, p: V3<S>) -> 
 }
 
 /// See [`collide::find_deepest_point`].
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn find_deepest_point<S: Simd>(
     simd: S,
     pose: &ColliderPose,

@@ -60,7 +60,7 @@ const STICK: f32 = 4.0;
 
 /// Adds the contact of point `i`, the second of the window. `x` is its position relative to the root, `drift`
 /// its predicted displacement, and `displacement` its displacement since the start of the substep, including `drift`.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn assemble_contact<S: Simd, const B: usize>(
     simd: S,
     (sweep, step): (Linearization, &SubstepContext<S>),
@@ -137,7 +137,7 @@ pub struct Surface<S: Simd> {
 #[inline(never)]
 pub fn nearest<S: Simd>(simd: S, colliders: &[ColliderPose], world: V3<S>, passed: [F<S>; 2]) -> Surface<S> {
     simd.vectorize(
-        #[cfg_attr(not(unoptimized), inline(always))]
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
         || {
             let (zero, most) = (V3::zero(simd), F::splat(simd, f32::MAX));
             let mut surface = Surface { distance: most, normal: zero, carried: zero, tolerance: most };
@@ -157,7 +157,7 @@ pub fn nearest<S: Simd>(simd: S, colliders: &[ColliderPose], world: V3<S>, passe
 }
 
 /// Updates the normal force on point `i` after the solve has moved the point by `delta`.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn update_contact_multiplier<S: Simd>(
     simd: S,
     step: &SubstepContext<S>,

@@ -45,7 +45,7 @@ pub struct AssemblyCursor<S: Simd> {
 
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, B, N> {
     /// Starts at the root.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn begin(
         simd: S,
         sweep: Linearization,
@@ -68,12 +68,12 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
             damped: damping * (1.0 / step.h) + 1.0,
             length_error_share: sweep.length_error_share(),
             drift: [zero; 2],
-            drifting: F::splat(simd, sweep.prediction_time(step.h)),
+            prediction_time: F::splat(simd, sweep.prediction_time(step.h)),
             h: step.h,
         };
         let begin = 2 * Profile::<B, N>::REACH * M::PROFILE.rows();
         scratch.factors[..begin].fill(Work::default());
-        scratch.across.clear();
+        scratch.altitude_springs.clear();
         let (band, model, half_drag) = (Band::new(simd), M::begin(simd, tile, &step.root), drag * 0.5);
         let share = if step.second_order { SIDEWAYS_BDF2 } else { M::SIDEWAYS };
         let sideways = Sideways::new(simd, share, step.h, step.touches);
@@ -88,10 +88,23 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         Self { band, model, cursor }
     }
 
+    /// Ends the part of the sweep that a function of its own passes. The window is not needed: the next point begins a new
+    /// one.
+    #[inline(always)]
+    pub fn suspend(self) -> (M, AssemblyCursor<S>) {
+        (self.model, self.cursor)
+    }
+
+    /// Continues a sweep that was suspended.
+    #[inline(always)]
+    pub fn resume(simd: S, (model, cursor): (M, AssemblyCursor<S>)) -> Self {
+        Self { band: Band::new(simd), model, cursor }
+    }
+
     /// Adds the elements that begin at the next point `i`: those of the model, and the stretch of the
     /// strand's segment from point i+1. `phase` is i modulo the model's stride. The cursor knows both; they
     /// are parameters so that the compiler sees them as constants.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn add(&mut self, simd: S, i: usize, phase: usize, tile: &mut Tile, scratch: &Scratch) -> Segment<S> {
         let Scratch { edges, fixed, .. } = scratch;
         let Self { band, model, cursor } = self;
@@ -123,7 +136,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         let (l, u) = e.length_and_unit();
         let at = &mut cursor.at;
         at.e = [segment(next), e];
-        at.drift = [at.drift[1], (v2 - v1) * at.drifting];
+        at.drift = [at.drift[1], (v2 - v1) * at.prediction_time];
         at.u = [at.u[1], u];
         at.inverse_length = [before, next].map(|i| load(simd, &fixed[i].inverse_length));
         model.add(simd, at, scratch, tile, band);
@@ -153,9 +166,9 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
     #[inline(always)]
     pub fn add_forces(&mut self, simd: S, i: usize, tile: &mut Tile, scratch: &Scratch) {
         self.add(simd, i, i % M::STRIDE, tile, scratch);
-        if M::acts_across(simd, i, tile, scratch) {
-            let across = M::across(simd, (self.cursor.at.h, 0.0), i, tile, scratch);
-            for (p, force) in across.forces().into_iter().enumerate() {
+        if M::has_altitude_spring(simd, i, tile, scratch) {
+            let spring = M::altitude_spring(simd, (self.cursor.at.h, 0.0), i, tile, scratch);
+            for (p, force) in spring.forces().into_iter().enumerate() {
                 self.band.add_force(p, force);
             }
         }

@@ -67,12 +67,12 @@ pub fn add<S, M, const B: usize, const N: usize>(
     M: Model<S, B, N>,
 {
     simd.vectorize(
-        #[cfg_attr(not(unoptimized), inline(always))]
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
         || act::<S, M, B, N>(simd, (sweep, step), place, tile, scratch),
     )
 }
 
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn act<S, M, const B: usize, const N: usize>(
     simd: S,
     (sweep, step): (Linearization, &SubstepContext<S>),

@@ -95,7 +95,7 @@ fn forces_of(
     forces
 }
 
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn cursor<S, M, const B: usize, const N: usize>(simd: S, s: &reference::Strand, tile: &mut Tile) -> Forces
 where
     S: Simd,

@@ -90,14 +90,14 @@ pub fn post_solve_shared<S: Simd>(
     scratch: &mut Scratch,
 ) {
     simd.vectorize(
-        #[cfg_attr(not(unoptimized), inline(always))]
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
         || post_solve(simd, stride, finish, step, tile, scratch),
     );
 }
 
 /// Applies strain limit and contact to every `stride`th particle of the new `scratch.edges`, and writes the
 /// state.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn post_solve<S: Simd>(
     simd: S,
     stride: usize,
@@ -206,7 +206,7 @@ pub fn post_solve<S: Simd>(
 
 /// Returns whether point `i` at world position `world`, or the segment `e` that ends there, may be inside a
 /// collider.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn needs_contact_test<S: Simd>(
     simd: S,
     step: &SubstepContext<S>,
@@ -249,12 +249,12 @@ fn resolve_contacts<S: Simd>(
     from: (&Particle<S>, &SegmentLimit<S>, Mask<S>),
 ) -> (V3<S>, Mask<S>) {
     simd.vectorize(
-        #[cfg_attr(not(unoptimized), inline(always))]
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
         || project_particle(simd, finish, step, tile, segment, from),
     )
 }
 
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn project_particle<S: Simd>(
     simd: S,
     finish: &PostSolveParams,
@@ -296,7 +296,7 @@ fn project_particle<S: Simd>(
             let carried = surface_displacement(simd, pose, world);
             let slide = at.displacement + (pushed - old) - carried;
             let tangent = slide - normal * normal.dot(slide);
-            let held = pushed - tangent * friction.share(depth, tangent.dot(tangent));
+            let rubbed = pushed - tangent * friction.share(depth, tangent.dot(tangent));
             // The part of the correction that did not stop an approach becomes a contact force in the next
             // solve (see `contact`).
             let v = V3::load(simd, &tile.state[i][state::V..]);
@@ -306,7 +306,7 @@ fn project_particle<S: Simd>(
             // The strain limit again, then out of the collider. Both hold where possible. Where a strand is
             // caught (behind an ear), its length has priority over its depth, so that it eventually slips
             // free.
-            let mut q = link.clamp(held);
+            let mut q = link.clamp(rubbed);
             let mut wall = V3::zero(simd);
             for correction in 0..=CORRECTIONS {
                 let (distance, normal) = contact(simd, pose, in_world(q));
@@ -388,7 +388,7 @@ impl<S: Simd> Particle<S> {
 }
 
 /// Stores the new edge from `before` to particle `i` and the particle's velocity. Returns the particle.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn write<S: Simd>(
     simd: S,
     finish: &PostSolveParams,

@@ -23,7 +23,7 @@ pub struct Precomputed {
 }
 
 /// Fills `scratch.fixed` for substeps of `h` [s].
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn precompute<S: Simd>(simd: S, h: f32, stretching: Stretching, tile: &Tile, scratch: &mut Scratch) {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     for (i, at) in tile.rest.iter().enumerate() {

@@ -67,9 +67,17 @@ impl<S: Simd> Projection<S> {
         Self { u, inner: tip, inverse: zero, d: zero, worst: zero, enough }
     }
 
+    /// Returns a copy. The compiler would keep the original, which a function wrote that is not inlined, in memory at every
+    /// point.
+    #[inline(always)]
+    pub fn in_registers(self) -> Self {
+        let Self { u, inner, inverse, d, worst, enough } = self;
+        Self { u, inner, inverse, d, worst, enough }
+    }
+
     /// Eliminates the segment from point `i` to the strand's next, as in `scratch.edges`. The first segment
     /// is driven by the root and must not be passed.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn eliminate(&mut self, simd: S, (stride, i): (usize, usize), tile: &Tile, scratch: &mut Scratch) {
         let Scratch { pulls, edges, fixed, .. } = scratch;
         let length = load(simd, &tile.rest[i][rest::LENGTH]);
@@ -104,7 +112,7 @@ impl<S: Simd> Projection<S> {
     /// Moves the points of the strands in `selected` after all segments have been eliminated, and adds λ times
     /// `force` (a/h² of the integrator) to the tensions. Returns false if all lengths were within tolerance
     /// before, or are now.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn move_points(
         self,
         simd: S,

@@ -59,7 +59,7 @@ pub fn relax<S: Simd>(
     (at, link): (&Particle<S>, &SegmentLimit<S>),
 ) -> Relaxed<S> {
     simd.vectorize(
-        #[cfg_attr(not(unoptimized), inline(always))]
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
         || {
             let &Correction { raw, solved, corrected, follows } = correction;
             let size = |v: V3<S>| v.dot(v).sqrt();

@@ -2,7 +2,7 @@
 //! sag-free start.
 //!
 //! A groom is authored as it hangs: under gravity, in balance. If its shape were taken as the stress-free
-//! one, it would sag in the first second. The sag-free start solves for the rest turns d that make every net
+//! one, it would bend in the first second. The sag-free start solves for the rest turns d that make every net
 //! force exactly zero, from tip to root. With B the stiffness of a joint, m = B r its moment vector, and W
 //! the weight that hangs from a segment,
 //!
@@ -36,7 +36,7 @@ use glam::{DVec3, Vec3};
 
 /// Largest |m|/B of a joint at the sag-free start [rad]. Beyond it, the linear moment no longer represents a
 /// fiber.
-const LARGEST_SAG: f64 = 0.5;
+const LARGEST_BEND: f64 = 0.5;
 
 // The next three constants make the initial equilibrium stable, with a margin. At the exact thresholds, soft
 // strands left it, growing by a factor of e every 60 ms, and were 20 cm away after two seconds. With these
@@ -271,13 +271,13 @@ pub fn rest_shape(points: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
             // The local weight per length. With the mean over everything beyond, strands with heavy tips were
             // unstable.
             let weight_per_length = g * rest[i].mass / mean;
-            let held = (moment.length() / LARGEST_CURVATURE).powf(1.5) / weight_per_length.sqrt() / mean;
+            let curving = (moment.length() / LARGEST_CURVATURE).powf(1.5) / weight_per_length.sqrt() / mean;
             let twisting = fiber.twist_ratio(i).map_or(0.0, |ratio| {
                 let along = t[i - 1].dot(t[i]) - 1.0;
                 torque.abs() / (ratio * curved_joint(along) * fade(i).powi(2) * LARGEST_TWIST)
             });
-            let sag = (moment.length() / LARGEST_SAG).max(twisting);
-            let needed = sag.max(held).max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
+            let bending = (moment.length() / LARGEST_BEND).max(twisting);
+            let needed = bending.max(curving).max(STANDING_SAFETY * g * height.max(0.0) * arc / mean);
             if needed > rest[i].bend {
                 rest[i].bend = needed;
                 start.stiffened += 1;

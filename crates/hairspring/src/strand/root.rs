@@ -26,7 +26,7 @@ impl<S: Simd> Root<S> {
     }
 
     /// The root at `fraction` of the frame's time, where `anchor` is the pose of the anchor.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn between(
         simd: S,
         (rows, strand_rows): (&RootRows, &StrandRows),

@@ -13,7 +13,7 @@ use crate::simd::lanes::{Simd, V3, Work};
 #[derive(Default)]
 pub struct Memory {
     factors: Vec<Work>,
-    across: Vec<bordered::Eliminated>,
+    altitude_springs: Vec<bordered::Eliminated>,
     edges: Vec<[Work; 3]>,
     kick: Vec<[Work; 3]>,
     change: Vec<[Work; 3]>,
@@ -29,7 +29,7 @@ pub struct Scratch<'a> {
     /// `local_global` stores its rows in the same memory.
     pub factors: &'a mut [Work],
     /// Springs with eliminated force, as a stack with capacity for one a point.
-    pub across: &'a mut Vec<bordered::Eliminated>,
+    pub altitude_springs: &'a mut Vec<bordered::Eliminated>,
     /// New edges: vectors from each particle's predecessor to it, shape `[points + EDGE_PADDING]` [m]; see
     /// `state::EDGE`.
     pub edges: &'a mut [[Work; 3]],
@@ -58,12 +58,12 @@ const EDGE_PADDING: usize = 3;
 
 impl Memory {
     /// Returns the scratch memory for a tile of `points`.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn scratch(&mut self, points: usize) -> Scratch<'_> {
         self.reserve(points);
         Scratch {
             factors: &mut self.factors[..(points + 2 * MAX_REACH) * MAX_FACTORS],
-            across: &mut self.across,
+            altitude_springs: &mut self.altitude_springs,
             edges: &mut self.edges[..points + EDGE_PADDING],
             kick: &mut self.kick[..points],
             change: &mut self.change[..points],
@@ -77,7 +77,7 @@ impl Memory {
     fn reserve(&mut self, points: usize) {
         if self.fixed.len() < points {
             self.factors.resize((points + 2 * MAX_REACH) * MAX_FACTORS, Work::default());
-            self.across.reserve(points);
+            self.altitude_springs.reserve(points);
             self.kick.resize(points, [Work::default(); 3]);
             self.change.resize(points, [Work::default(); 3]);
             self.edges.resize(points + EDGE_PADDING, [Work::default(); 3]);
@@ -94,8 +94,8 @@ impl Scratch<'_> {
     /// [`Tile::reborrow`]: super::tile::Tile::reborrow
     #[inline(always)]
     pub fn reborrow(&mut self) -> Scratch<'_> {
-        let Self { factors, across, edges, kick, change, contacts, pulls, fixed } = self;
-        Scratch { factors, across, edges, kick, change, contacts, pulls, fixed }
+        let Self { factors, altitude_springs, edges, kick, change, contacts, pulls, fixed } = self;
+        Scratch { factors, altitude_springs, edges, kick, change, contacts, pulls, fixed }
     }
 
     /// Fills `edges` from those in `state`, shape `[points]`.

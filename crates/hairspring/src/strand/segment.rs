@@ -31,7 +31,7 @@ use glam::Vec3;
 /// Permitted depth of a segment between its ends, over its length [1]. On a smooth body with radius R, a
 /// segment of length L is always inside by L/8R of its length. That is not treated as a contact, because the
 /// points hold the segment, and a head with segments of a centimeter is a smooth body.
-const SAG: f32 = 0.015;
+const SEGMENT_TOLERANCE: f32 = 0.015;
 
 /// Permitted depth in a thin rod, over its radius [1]. It does not apply to thin boxes: with the same limit, a plate of 1 mm
 /// that is dragged through segments of 27 mm throws hair.
@@ -66,7 +66,7 @@ const ENOUGH: f32 = 1.02;
 
 /// Excess depth up to which a segment with alternating corrections is left, over its length [1]. A smaller
 /// depth does not justify a restart.
-const LEFT: f32 = 0.5 * SAG;
+const LEFT: f32 = 0.5 * SEGMENT_TOLERANCE;
 
 /// Number of directions from which such a segment restarts.
 const STARTS: usize = 48;
@@ -80,7 +80,7 @@ const FARTHEST: f32 = 1.0;
 /// Returns whether segments of up to `length` [m] need no test against a round shape with this `radius` [m]:
 /// their depth is within the tolerance at any length that the strain limit permits.
 pub fn segment_contact_unneeded(length: f32, radius: f32) -> bool {
-    length * (1.0 + LIMIT).powi(2) <= 8.0 * SAG * radius
+    length * (1.0 + LIMIT).powi(2) <= 8.0 * SEGMENT_TOLERANCE * radius
 }
 
 /// Returns the largest depth that [`segment_tolerance`] permits in this collider [m]. In a rod thinner than the tolerance
@@ -96,7 +96,7 @@ pub fn max_tolerance(pose: &ColliderPose) -> f32 {
 #[inline(always)]
 pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize, max: F<S>) -> F<S> {
     let inner = i - tile.layout.model.stride();
-    let tolerance = (load(simd, &tile.rest[inner][rest::LENGTH]) * SAG).min(max);
+    let tolerance = (load(simd, &tile.rest[inner][rest::LENGTH]) * SEGMENT_TOLERANCE).min(max);
     tile.rest_penetration.get(i).map_or(tolerance, |authored| tolerance - load(simd, authored))
 }
 
@@ -107,7 +107,7 @@ pub fn segment_tolerance<S: Simd>(simd: S, tile: &Tile, i: usize, max: F<S>) -> 
 /// `distance` is the point's distance from the surface before its own correction [m]. Points that are
 /// `caught` are still inside. Segments at a point that passes through the collider are `free`. `before` is the distance of
 /// the inner end from the surface, where that end may be inside [m].
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn resolve_segment_contact<S: Simd>(
     simd: S,
     (finish, step, pose): (&PostSolveParams, &SubstepContext<S>, &ColliderPose),
@@ -121,11 +121,11 @@ pub fn resolve_segment_contact<S: Simd>(
     let a = step.root.position + inner.x;
     let tolerated = -segment_tolerance(simd, tile, i, F::splat(simd, max_tolerance(pose)));
     // No motion of the segment takes its inner end out, and a force on it would grow without bound.
-    let held = before.simd_lt(tolerated);
-    let clear = held.select(before, tolerated);
-    if held.any_true() {
+    let stuck = before.simd_lt(tolerated);
+    let clear = stuck.select(before, tolerated);
+    if stuck.any_true() {
         let row = &mut tile.segment_contacts[i][segment_contact::FORCE];
-        store(held.select(zero, load(simd, row)), row);
+        store(stuck.select(zero, load(simd, row)), row);
     }
     // A segment whose end is farther from the surface than the segment is long has no place inside, because
     // distance is 1-Lipschitz. The exception is a field sampled on the two sides of a thin wall, where a
@@ -143,7 +143,7 @@ pub fn resolve_segment_contact<S: Simd>(
     let edges = pose.edges.as_ref().filter(thin);
     let side = edges.map(|edges| {
         let mut side = edges.side(simd, (a - inner.displacement, old), -(clear + clear));
-        side.known &= link.length.simd_gt(2.0 * edges.half_thickness()) & !held;
+        side.known &= link.length.simd_gt(2.0 * edges.half_thickness()) & !stuck;
         (edges, side)
     });
     // A segment that has pierced a thin box gets no correction and no force. Corrections would push it to one side and then
@@ -243,7 +243,7 @@ pub fn resolve_segment_contact<S: Simd>(
             let rows = &mut tile.segment_contacts[i];
             let force = load(simd, &rows[segment_contact::FORCE]);
             let deep = (clear - pressed.distance).max(0.0);
-            let pressing = pressing & deep.simd_gt(end) & !held;
+            let pressing = pressing & deep.simd_gt(end) & !stuck;
             let more = pressing.select(finish.pressed(force, mass, deep, approach), force);
             store(more, &mut rows[segment_contact::FORCE]);
             let at = load(simd, &rows[segment_contact::AT]);
@@ -266,7 +266,7 @@ pub fn resolve_segment_contact<S: Simd>(
 
 /// Returns where the segment from `a` to `a + q` is inside the shape, or past the side that it was on. Places
 /// before the fraction `from` of the segment are ignored.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn cut<S: Simd>(
     simd: S,
     (pose, side): (&ColliderPose, &Option<(&Edges, Side<S>)>),

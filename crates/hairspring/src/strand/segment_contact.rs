@@ -51,7 +51,7 @@ const RESTS: f32 = 1e-3;
 /// displacement since the start of the substep, including `drift`. `stride` is the model's. It is a parameter
 /// so that the compiler knows which entries of the band are written; otherwise all of the band stays in
 /// memory.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn assemble_segment_contact<S: Simd, const B: usize>(
     simd: S,
     (sweep, step, stride): (Linearization, &SubstepContext<S>, usize),
@@ -158,7 +158,7 @@ fn nearest_edge<S: Simd>(
     passed: [F<S>; 2],
 ) -> (F<S>, Surface<S>, Mask<S>) {
     simd.vectorize(
-        #[cfg_attr(not(unoptimized), inline(always))]
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
         || {
             let mut surface = nearest(simd, colliders, e.mul_add(at, a), passed);
             let mut at = at;
@@ -224,7 +224,7 @@ pub fn moved_place<S: Simd>(pose: &ColliderPose, at: F<S>, to: F<S>) -> F<S> {
 }
 
 /// Updates the contact force on the segment from point `i` after the solve has moved its ends by `moved`.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn update_segment_contact_multiplier<S: Simd>(
     simd: S,
     step: &SubstepContext<S>,

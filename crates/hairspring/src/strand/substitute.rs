@@ -1,7 +1,7 @@
 //! The upward sweep: back-substitutes the solution point by point and adds it to the edges.
 
 use super::{
-    assemble::{Linearization, SubstepContext},
+    assemble::{Linearization, SubstepContext, first_in_loop},
     band::back_substitute,
     contact::update_contact_multiplier,
     model::{Model, Solved},
@@ -15,7 +15,7 @@ use crate::simd::lanes::{F, Simd, V3, load, store};
 
 /// The upward sweep. Adds the solution to `scratch.edges`, adds the forces of the stretch springs to the
 /// tensions, and eliminates the new segments for projection.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn substitute<S, M, const B: usize, const N: usize>(
     simd: S,
     (sweep, carried): (Linearization, F<S>),
@@ -45,7 +45,7 @@ where
     };
     // The tip and the points next to the root are handled outside the loop, so that the loop has no special
     // cases.
-    let first = M::DRIVEN.next_multiple_of(M::STRIDE);
+    let first = first_in_loop::<S, M, B, N>();
     up.pass_point::<M, B>(simd, (sweep, n - 1, 0, true), step, tile, scratch);
     let mut i = n - 1;
     while i > first {
@@ -55,10 +55,43 @@ where
         i -= M::STRIDE;
         up.pass_point::<M, B>(simd, (sweep, i, 0, false), step, tile, scratch);
     }
-    for i in (1..first.min(n - 1)).rev() {
-        up.pass_point::<M, B>(simd, (sweep, i, i % M::STRIDE, false), step, tile, scratch);
-    }
-    up.projection
+    // A copy: the compiler would keep the original in memory at every point.
+    pass_driven_points::<S, M, B, N>(
+        simd,
+        sweep,
+        step,
+        &mut tile.reborrow(),
+        &mut scratch.reborrow(),
+        BackSubstitution { ..up },
+    )
+    .in_registers()
+}
+
+/// Passes the points that the root drives, which are the last ones.
+///
+/// Not inlined: once a strand, a call costs nothing, and the few points would be most of the kernel's code.
+#[inline(never)]
+fn pass_driven_points<S, M, const B: usize, const N: usize>(
+    simd: S,
+    sweep: Linearization,
+    step: &SubstepContext<S>,
+    tile: &mut Tile,
+    scratch: &mut Scratch,
+    mut up: BackSubstitution<S, N>,
+) -> Projection<S>
+where
+    S: Simd,
+    M: Model<S, B, N>,
+{
+    simd.vectorize(
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
+        || {
+            for i in (1..first_in_loop::<S, M, B, N>().min(tile.rest.len() - 1)).rev() {
+                up.pass_point::<M, B>(simd, (sweep, i, i % M::STRIDE, false), step, tile, scratch);
+            }
+            up.projection
+        },
+    )
 }
 
 /// The state of the upward sweep.
@@ -72,7 +105,7 @@ struct BackSubstitution<S: Simd, const N: usize> {
 
 impl<S: Simd, const N: usize> BackSubstitution<S, N> {
     /// Solves for point i. `phase` is i modulo the model's stride, and `tip` is set for the last point.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn pass_point<M: Model<S, B, N>, const B: usize>(
         &mut self,
         simd: S,
@@ -85,9 +118,9 @@ impl<S: Simd, const N: usize> BackSubstitution<S, N> {
         let mut delta = V3::zero(simd);
         if i >= M::DRIVEN || B > 3 {
             if M::PROFILE.is_far()
-                && let Some(across) = scratch.across.pop_if(|across| across.point == i)
+                && let Some(spring) = scratch.altitude_springs.pop_if(|spring| spring.point == i)
             {
-                across.back_substitute(simd, M::PROFILE, &solved.unknowns, scratch.factors);
+                spring.back_substitute(simd, M::PROFILE, &solved.unknowns, scratch.factors);
             }
             let factors = &scratch.factors[(i + Profile::<B, N>::REACH) * M::PROFILE.rows()..];
             back_substitute(simd, M::PROFILE, factors, &mut solved.unknowns);

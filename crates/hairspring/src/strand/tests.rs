@@ -426,7 +426,7 @@ fn kernel(s: &reference::Strand, model: Elastic, double: bool) -> (Vec<DVec3>, V
 }
 
 /// Stores the solved edges of one lane in `edges`.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn solve_substep<S: Simd>(
     simd: S,
     s: &reference::Strand,
@@ -457,7 +457,7 @@ fn solve_substep<S: Simd>(
     }
 }
 
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn solve_once<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &mut Tile, scratch: &mut Scratch) {
     let whole = (Linearization::Initial, F::splat(simd, 1.0));
     match tile.layout.model {

@@ -27,7 +27,7 @@ const SLACK: f32 = 1e-3;
 
 /// Adds the tether's force on point `i`, the second of the window. `x` is its position relative to the root
 /// and `drift` its predicted displacement.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn pull<S: Simd, const B: usize>(
     simd: S,
     step: &SubstepContext<S>,
@@ -64,7 +64,7 @@ pub fn exceeds_lra<S: Simd>(simd: S, tile: &Tile, i: usize, x: V3<S>) -> Mask<S>
 /// The point first moves straight toward the root as far as the segment may shorten, and only then sideways.
 /// A segment that points away from the root would have to swing by √(2 l δ) to come back by δ at constant
 /// length, which would create motion.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn apply_lra<S: Simd>(
     simd: S,
     tile: &Tile,

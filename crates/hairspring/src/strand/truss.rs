@@ -60,7 +60,7 @@ const LEAST_LEVER: f64 = 0.5;
 
 /// Largest rotation of a joint from its natural one at the sag-free start [rad]. It is smaller than the
 /// rod's, because a truss folds sooner.
-const LARGEST_SAG: f64 = 0.15;
+const LARGEST_ROTATION: f64 = 0.15;
 
 /// Largest relative change of a spring's rest length at the sag-free start [1]. The spring is stiffened if it
 /// would be exceeded.
@@ -129,8 +129,8 @@ pub fn truss(particles: &[Vec3], fiber: &Fiber, gravity: DVec3) -> RestShape {
         let (before, at) = (&strand.points[j - 1], &strand.points[j]);
         let t = [2 * j, 2 * j + 2].map(|k| (x[k] - x[k - 2]).normalize_or_zero());
         let natural = before.normal * at.turn.x + t[0].cross(before.normal) * at.turn.y + t[0] * at.turn.z;
-        let sag = (t[1] - t[0] - natural).length();
-        let bend = at.bend * (sag / LARGEST_SAG).max(1.0);
+        let rotation = (t[1] - t[0] - natural).length();
+        let bend = at.bend * (rotation / LARGEST_ROTATION).max(1.0);
         let most = stiffest * shorter * shorter / (BRACED[0] * hardest);
         // At most the stiffness that the rod may have. The rod's joint may have been reduced to exactly that.
         start.held_back += usize::from(bend >= most);

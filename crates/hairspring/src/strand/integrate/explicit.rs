@@ -33,7 +33,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B,
     const STRETCHING: Stretching = Stretching::Fiber;
 
     /// Additional velocity changes are in `scratch.kick`.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn advance(
         simd: S,
         frame: &FrameContext,

@@ -35,7 +35,7 @@ pub struct FollowTheLeader;
 
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B, N> for FollowTheLeader {
     /// The velocity correction is in `scratch.kick`.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn advance(
         simd: S,
         frame: &FrameContext,

@@ -23,7 +23,7 @@ pub struct Implicit;
 impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Method<S, M, B, N> for Implicit {
     const PRODUCTION: bool = true;
 
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn advance(
         simd: S,
         frame: &FrameContext,
@@ -72,7 +72,7 @@ fn iteration_limit<S: Simd>(simd: S, setting: u32, tile: &Tile) -> F<S> {
 /// f32.
 const NEWTON_TOLERANCE: f32 = 1e-5;
 
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn solve<S, M, const B: usize, const N: usize>(
     simd: S,
     frame: &FrameContext,
@@ -84,18 +84,30 @@ where
     S: Simd,
     M: Model<S, B, N>,
 {
-    let mut carried = step.carried;
     let newton = frame.iterations > 1;
-    if newton {
-        // The iterations add up to the tension; `refine` keeps the share of it.
-        for (rows, before) in tile.state.iter().zip(&mut *scratch.change) {
-            store(load(simd, &rows[state::TENSION]), &mut before[0]);
-        }
-        carried = F::splat(simd, 1.0);
-    }
+    store_tensions(simd, newton, &tile.reborrow(), &mut scratch.reborrow());
+    // The iterations add up to the tension; `refine` keeps the share of it.
+    let carried = step.carried.max(if newton { 1.0 } else { 0.0 });
     assemble::<S, M, B, N>(simd, Linearization::Initial, step, tile, scratch);
     let projection = substitute::<S, M, B, N>(simd, (Linearization::Initial, carried), step, tile, scratch);
     if newton { refine::<S, M, B, N>(simd, frame, step, tile, scratch) } else { projection }
+}
+
+/// Stores the tensions in `scratch.change` if they are `needed`.
+///
+/// Not inlined: with this branch in it, the compiler makes two copies of the kernel, one for each outcome.
+#[inline(never)]
+fn store_tensions<S: Simd>(simd: S, needed: bool, tile: &Tile, scratch: &mut Scratch) {
+    if needed {
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                for (rows, before) in tile.state.iter().zip(&mut *scratch.change) {
+                    store(load(simd, &rows[state::TENSION]), &mut before[0]);
+                }
+            },
+        );
+    }
 }
 
 /// Newton's iterations after the first solve. The tensions before it are in `scratch.change`.
@@ -114,12 +126,12 @@ where
     M: Model<S, B, N>,
 {
     simd.vectorize(
-        #[cfg_attr(not(unoptimized), inline(always))]
+        #[cfg_attr(not(any(test, unoptimized)), inline(always))]
         || iterate::<S, M, B, N>(simd, frame, step, tile, scratch),
     )
 }
 
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn iterate<S, M, const B: usize, const N: usize>(
     simd: S,
     frame: &FrameContext,

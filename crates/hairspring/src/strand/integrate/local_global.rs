@@ -76,7 +76,7 @@ pub fn run(level: Level, frame: &FrameContext, tile: &mut Tile, memory: &mut Mem
 }
 
 /// Factors the constant matrix into `scratch.factors`.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn factor<S: Simd>(simd: S, h: f32, tile: &Tile, scratch: &mut Scratch) {
     let n = tile.rest.len();
     scratch.factors[..2 * BEFORE * ROWS].fill(Work::default());
@@ -120,7 +120,7 @@ fn weights<S: Simd>(simd: S, h: f32, tile: &Tile, i: usize) -> [F<S>; 4] {
 }
 
 /// Runs `iterations` iterations and stores the new edges in `scratch.edges`.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn iterate<S: Simd>(
     simd: S,
     iterations: u32,

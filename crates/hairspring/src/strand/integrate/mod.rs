@@ -44,7 +44,7 @@ pub trait Method<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> {
     const PRODUCTION: bool = false;
 
     /// Prepares the substeps of a frame.
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn begin(_: S, _: &FrameContext, _: &Tile, _: &mut Scratch) {}
 
     /// Computes a substep: stores the new edges in `scratch.edges`, and returns how the substep is completed.
@@ -58,7 +58,7 @@ pub trait Method<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> {
 }
 
 /// Runs the substeps of `frame` that are due now, for one tile, with the method `I`.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn run_tile<S, M, I, const B: usize, const N: usize>(
     simd: S,
     frame: &FrameContext,
@@ -135,7 +135,7 @@ pub fn run_tile<S, M, I, const B: usize, const N: usize>(
 /// Acceleration of point `i` by gravity, external acceleration, position spring, anisotropic drag and air
 /// drag [m/s²]. `u` is the unit vector of the segment that begins at the point, and `x` is its position
 /// relative to the root.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn outside<S: Simd>(simd: S, step: &SubstepContext<S>, tile: &Tile, i: usize, [u, x]: [V3<S>; 2]) -> V3<S> {
     let (stride, zero) = (tile.layout.model.stride(), F::<S>::splat(simd, 0.0));
     let length = |i: usize| load(simd, &tile.rest[i][rest::LENGTH]);
@@ -207,7 +207,7 @@ fn carried<S: Simd>(simd: S, moved: V3<S>, h: f32, tile: &Tile) -> F<S> {
 ///
 /// A contact may push a point away, and the point soon returns. In between, its motion is damped as in
 /// contact. Otherwise it would gain speed from each bounce.
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 fn touching<S: Simd>(simd: S, frame: &FrameContext, colliders: &[ColliderPose], tile: &mut Tile) -> Mask<S> {
     let mut most = F::<S>::splat(simd, if frame.hair_contact { 1.0 } else { 0.0 });
     if !colliders.is_empty() {

@@ -17,7 +17,7 @@ const FLATTENED: f32 = 0.5;
 
 /// Positions of the three particles after particle `i`, relative to it [m].
 #[inline(always)]
-pub fn after<S: Simd>(simd: S, i: usize, scratch: &Scratch) -> [V3<S>; 3] {
+pub fn next_three_particles<S: Simd>(simd: S, i: usize, scratch: &Scratch) -> [V3<S>; 3] {
     let edges: &[_; 3] = scratch.edges[i + 1..].first_chunk().expect("edges are padded past the tip");
     let [e1, e2, e3] = edges.each_ref().map(|e| V3::load(simd, e));
     [e1, e1 + e2, e1 + e2 + e3]
@@ -32,17 +32,17 @@ pub fn flattened<S: Simd>(p: [V3<S>; 3], rest: &[Row]) -> Mask<S> {
 }
 
 /// Returns the altitude spring of particle `i` and the three after it, with stiffness 0 where their
-/// tetrahedron is not [`flattened`]. `h` is the length of the substep [s], and `drifting` is the time that
+/// tetrahedron is not [`flattened`]. `h` is the length of the substep [s], and `prediction_time` is the time that
 /// velocities act before the starting point of the solve [s].
-#[cfg_attr(not(unoptimized), inline(always))]
-pub fn across<S: Simd>(
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
+pub fn altitude_spring<S: Simd>(
     simd: S,
-    (h, drifting): (f32, f32),
+    (h, prediction_time): (f32, f32),
     i: usize,
     tile: &Tile,
     scratch: &Scratch,
 ) -> BorderedConstraint<S> {
-    let p = after(simd, i, scratch);
+    let p = next_three_particles(simd, i, scratch);
     let rest = &tile.rest[i];
     let kept = load(simd, &rest[springs::VOLUME]) * FLATTENED;
     let k = flattened(p, rest).select(load(simd, &rest[springs::K3]), F::splat(simd, 0.0));
@@ -57,7 +57,7 @@ pub fn across<S: Simd>(
         let v = V3::load(simd, &tile.state[(i + far).min(tip)][state::V..]);
         drift = (v - v0).mul_add(c, drift);
     }
-    let extension = direction.dot(drift).mul_add(F::splat(simd, drifting), extension / damped);
+    let extension = direction.dot(drift).mul_add(F::splat(simd, prediction_time), extension / damped);
     BorderedConstraint { gradient: c.map(|c| direction * c), extension, stiffness: k * damped }
 }
 
@@ -76,7 +76,7 @@ const HEIGHTS: [([usize; 4], bool); 7] = [
 /// Returns the shortest height of a tetrahedron: its unit direction, the coefficient of that direction in the
 /// gradient of the height at each of the four points, and the extension of the height beyond its value at
 /// `volume`, which is six times a volume [m³]. The extension is in [m].
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn altitude<S: Simd>(simd: S, x: [V3<S>; 4], volume: F<S>) -> (V3<S>, [F<S>; 4], F<S>) {
     let (zero, one) = (F::<S>::splat(simd, 0.0), F::<S>::splat(simd, 1.0));
     let nought = V3::zero(simd);

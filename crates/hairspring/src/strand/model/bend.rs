@@ -37,7 +37,7 @@ pub struct Bend<S: Simd> {
 /// `u0` is the unit vector of `e0`, `alpha` and `beta` are the inverse rest lengths, and `d` is the rest turn
 /// in world axes. `stiffness` is B [N m], and `implicit` is the stiffness with damping for the matrix, B (1 +
 /// τ/h).
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn bend<S: Simd>(
     [[e0, e1], [d0, d1]]: [[V3<S>; 2]; 2],
     u0: V3<S>,

@@ -47,7 +47,7 @@ pub struct At<S: Simd> {
     /// [m].
     pub drift: [V3<S>; 2],
     /// The time that velocities act before that starting point [s].
-    pub drifting: F<S>,
+    pub prediction_time: F<S>,
     /// Length of the substep [s].
     pub h: f32,
 }
@@ -116,14 +116,14 @@ pub trait Model<S: Simd, const B: usize, const N: usize>: Sized {
     /// Returns whether a spring spans the four particles from `i` on. This test runs at every particle; the
     /// spring itself is handled by a separate function, because few particles have one.
     #[inline(always)]
-    fn acts_across(_: S, _: usize, _: &Tile, _: &Scratch) -> bool {
+    fn has_altitude_spring(_: S, _: usize, _: &Tile, _: &Scratch) -> bool {
         false
     }
 
     /// Returns that spring; its stiffness is 0 in models that have none. The pair holds the length of the
     /// substep and the time that velocities act before the starting point of the solve [s].
     #[inline(always)]
-    fn across(simd: S, _: (f32, f32), _: usize, _: &Tile, _: &Scratch) -> BorderedConstraint<S> {
+    fn altitude_spring(simd: S, _: (f32, f32), _: usize, _: &Tile, _: &Scratch) -> BorderedConstraint<S> {
         BorderedConstraint::none(simd)
     }
 

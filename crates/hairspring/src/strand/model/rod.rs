@@ -112,7 +112,7 @@ impl<S: Simd> Model<S, 4, 11> for Rod<S> {
         }
     }
 
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn add(&mut self, simd: S, at: &At<S>, _: &Scratch, tile: &mut Tile, band: &mut Band<S, 4, 11>) {
         let one = F::<S>::splat(simd, 1.0);
         let own = &tile.rest[at.i + 1];

@@ -25,7 +25,7 @@
 
 use super::{
     At, Model, Solved,
-    altitude::{self, after, flattened},
+    altitude::{altitude_spring, flattened, next_three_particles},
 };
 use crate::{
     simd::{
@@ -68,20 +68,26 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
     }
 
     #[inline(always)]
-    fn acts_across(simd: S, i: usize, tile: &Tile, scratch: &Scratch) -> bool {
-        flattened(after(simd, i, scratch), &tile.rest[i]).any_true()
+    fn has_altitude_spring(simd: S, i: usize, tile: &Tile, scratch: &Scratch) -> bool {
+        flattened(next_three_particles(simd, i, scratch), &tile.rest[i]).any_true()
     }
 
     #[inline(always)]
-    fn across(simd: S, times: (f32, f32), i: usize, tile: &Tile, scratch: &Scratch) -> BorderedConstraint<S> {
-        altitude::across(simd, times, i, tile, scratch)
+    fn altitude_spring(
+        simd: S,
+        times: (f32, f32),
+        i: usize,
+        tile: &Tile,
+        scratch: &Scratch,
+    ) -> BorderedConstraint<S> {
+        altitude_spring(simd, times, i, tile, scratch)
     }
 
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn add(&mut self, simd: S, at: &At<S>, scratch: &Scratch, tile: &mut Tile, band: &mut Band<S, 3, 12>) {
         let i = at.i;
         let (rest, fixed) = (&tile.rest[i], &scratch.fixed[i]);
-        let p = after(simd, i, scratch);
+        let p = next_three_particles(simd, i, scratch);
         // Elements beyond the tip have no stiffness, so the clamped index does no harm.
         let tip = tile.rest.len() - 1;
         let v = |k: usize| V3::load(simd, &tile.state[(i + k).min(tip)][state::V..]);
@@ -98,7 +104,7 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
             (l - load(simd, &tile.rest[i - at.phase + 1][springs::SIDES])) * at.length_error_share,
             tension,
         );
-        add_spring(band, 1, u, k, k.mul_add(u.dot(drift(1)) * at.drifting, pull));
+        add_spring(band, 1, u, k, k.mul_add(u.dot(drift(1)) * at.prediction_time, pull));
 
         // The second particle after a point is the strand's next point. That spring is the segment's and is
         // added elsewhere.
@@ -107,7 +113,7 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
                 [p[1], drift(2)],
                 [load(simd, &rest[springs::L2]), load(simd, &fixed.inverse_spans[0])],
                 load(simd, &rest[springs::K2]),
-                [at.damped, at.drifting],
+                [at.damped, at.prediction_time],
             );
             add_spring(band, 2, u, k, pull);
         }
@@ -115,7 +121,7 @@ impl<S: Simd> Model<S, 3, 12> for Springs {
             [p[2], drift(3)],
             [load(simd, &rest[springs::L3]), load(simd, &fixed.inverse_spans[1])],
             load(simd, &rest[springs::K3]),
-            [at.damped, at.drifting],
+            [at.damped, at.prediction_time],
         );
         band.add_long_range_spring(u, k, pull);
     }
@@ -186,12 +192,12 @@ impl Progressive {
         [e, v]: [V3<S>; 2],
         [rest, inverse]: [F<S>; 2],
         k: F<S>,
-        [damped, drifting]: [F<S>; 2],
+        [damped, prediction_time]: [F<S>; 2],
     ) -> (V3<S>, F<S>, F<S>) {
         let (l, u) = e.length_and_unit();
         let [secant, tangent] = self.stiffness(k.simd, (l - rest) * inverse);
         let implicit = k * tangent * damped;
-        (u, implicit, implicit.mul_add(u.dot(v) * drifting, k * secant * (l - rest)))
+        (u, implicit, implicit.mul_add(u.dot(v) * prediction_time, k * secant * (l - rest)))
     }
 
     /// Force and energy of a spring with linear stiffness 1 and rest length `rest`, extended by `longer` [m],

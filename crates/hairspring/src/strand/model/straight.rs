@@ -34,7 +34,7 @@ impl<S: Simd> Model<S, 3, 9> for Straight {
         Self
     }
 
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     fn add(&mut self, simd: S, at: &At<S>, _: &Scratch, tile: &mut Tile, band: &mut Band<S, 3, 9>) {
         let stiffness = load(simd, &tile.rest[at.i + 1][rest::BEND]);
         let ([e0, e1], [alpha, beta]) = (at.e, at.inverse_length);

@@ -26,7 +26,7 @@ pub enum Stretching {
 impl Stretching {
     /// Stiffness of the spring along the segment that begins at `point`, in a substep of `h` [s]; 0 for
     /// padding [N/m].
-    #[cfg_attr(not(unoptimized), inline(always))]
+    #[cfg_attr(not(any(test, unoptimized)), inline(always))]
     pub fn stiffness<S: Simd>(self, simd: S, h: f32, tile: &Tile, point: usize) -> F<S> {
         let rest = &tile.rest[point];
         let length = load(simd, &rest[rest::LENGTH]);
@@ -148,7 +148,7 @@ pub fn sideways(share: f64, touches: bool, stiffness: f64, (mass, h): (f64, f64)
 /// Lagrangian, keeps a strand at rest exactly at rest, whatever the stiffness of the spring. `drift` is the
 /// predicted displacement of the farther end relative to the nearer one [m]. `mass` is that of the farther
 /// point [kg].
-#[cfg_attr(not(unoptimized), inline(always))]
+#[cfg_attr(not(any(test, unoptimized)), inline(always))]
 pub fn stretch<S: Simd>(
     (length, u): (F<S>, V3<S>),
     longer: F<S>,
