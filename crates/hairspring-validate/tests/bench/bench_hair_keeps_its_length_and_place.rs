@@ -5,7 +5,7 @@
 //! in the sphere than 0.1 mm, no value is non-finite, and memory is under 120 bytes a point. Strands of
 //! other lengths, substep counts and shakes keep the bounds that do not depend on them.
 
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec2, Vec3};
 use hairspring::{
     air::Air,
     collide::{ColliderShape, MovingCollider},
@@ -112,7 +112,8 @@ fn shaken(
     let root = Vec3::new(0.3, 1.0, 0.0);
     let center = Vec3::Y * -HEAD;
     let strands = |group: u16| {
-        let out = if alone { Vec3::Y } else { PLACES[usize::from(group)] };
+        let aside = if alone { Vec2::ZERO } else { PLACES[usize::from(group)] * 0.2 };
+        let out = Vec3::new(aside.x, 1.0, aside.y).normalize();
         let root = root + center + out * HEAD;
         let line = |count: usize, length: f32| line(root, root + out * length, count);
         let mut folded = line(12, 0.2);
@@ -159,8 +160,8 @@ fn shaken(
 /// Radius of a head [m].
 const HEAD: f32 = 0.1;
 
-/// Places on a head, as directions from its center: hair of different places seldom meets.
-const PLACES: [Vec3; PRESETS.len()] = [Vec3::Y, Vec3::X, Vec3::NEG_X, Vec3::Z, Vec3::NEG_Z];
+/// Directions from the top of a head to the places of the materials, which are 2 cm away.
+const PLACES: [Vec2; PRESETS.len()] = [Vec2::ZERO, Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y];
 
 #[test]
 fn violent_motion_leaves_no_trace() {
