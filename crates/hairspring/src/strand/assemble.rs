@@ -180,7 +180,8 @@ pub fn first_in_loop<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize>
 
 /// Starts the sweep, and passes the points that the root drives.
 ///
-/// Not inlined: once a strand, a call costs nothing, and the few points would be most of the kernel's code.
+/// Not inlined: it runs once a strand, so the call is cheap. Inlined, these few points would be a large part of the kernel's
+/// code.
 #[inline(never)]
 fn pass_driven_points<S, M, const B: usize, const N: usize>(
     simd: S,

@@ -88,7 +88,7 @@ impl<S: Simd, M: Model<S, B, N>, const B: usize, const N: usize> Elements<S, M, 
         Self { band, model, cursor }
     }
 
-    /// Ends the part of the sweep that a function of its own passes. The window is not needed: the next point begins a new
+    /// Returns the state of the sweep between two points. The window is not part of it, because each point begins a new
     /// one.
     #[inline(always)]
     pub fn suspend(self) -> (M, AssemblyCursor<S>) {

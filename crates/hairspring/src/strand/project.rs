@@ -67,8 +67,8 @@ impl<S: Simd> Projection<S> {
         Self { u, inner: tip, inverse: zero, d: zero, worst: zero, enough }
     }
 
-    /// Returns a copy. The compiler would keep the original, which a function wrote that is not inlined, in memory at every
-    /// point.
+    /// Returns a copy that the compiler can keep in registers. It keeps what a function returned that is not inlined in
+    /// memory.
     #[inline(always)]
     pub fn in_registers(self) -> Self {
         let Self { u, inner, inverse, d, worst, enough } = self;

@@ -69,7 +69,8 @@ where
 
 /// Passes the points that the root drives, which are the last ones.
 ///
-/// Not inlined: once a strand, a call costs nothing, and the few points would be most of the kernel's code.
+/// Not inlined: it runs once a strand, so the call is cheap. Inlined, these few points would be a large part of the kernel's
+/// code.
 #[inline(never)]
 fn pass_driven_points<S, M, const B: usize, const N: usize>(
     simd: S,
