@@ -48,7 +48,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     output::try_folder(to)?;
     let (loaded, files) = Inputs::record(from, || read_groom(from, &(*units).into()));
     let mut loaded = loaded.map_err(|e| Fault::reading(e, from))?;
-    output::keep_inputs(&files, from, [to.clone()])?;
+    output::check_outputs(&files, from, [to.clone()])?;
     print_notes(&loaded.notes, console);
     if units.reverse {
         loaded.value.reverse();

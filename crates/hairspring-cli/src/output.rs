@@ -30,19 +30,24 @@ pub fn try_folder(path: &Path) -> Result<(), Fault> {
         };
         return Err(Fault::Unwritable(text));
     }
-    if path.is_dir() {
-        let text = format!("{} is a folder; name a file in it", path.display());
-        return Err(Fault::Unwritable(text));
-    }
-    // A pipe would be replaced by a file, and whoever reads from it would wait for ever.
-    if std::fs::metadata(path).is_ok_and(|there| !there.is_file()) {
-        let text = format!("{} is a pipe, a socket or a device; name a file", path.display());
-        return Err(Fault::Unwritable(text));
-    }
+    check_target(path)?;
     // Creates an unnamed file if the system supports it, otherwise one that is removed immediately.
     tempfile::tempfile_in(folder).map(drop).map_err(|e| {
         Fault::Unwritable(format!("cannot write to the folder {}: {e}; choose another", folder.display()))
     })
+}
+
+/// Refuses to write to `path` if it exists and is no regular file. A pipe would be replaced by a file, and whoever reads
+/// from it would wait for ever.
+fn check_target(path: &Path) -> Result<(), Fault> {
+    let text = match std::fs::metadata(path) {
+        Ok(there) if there.is_dir() => format!("{} is a folder; name a file in it", path.display()),
+        Ok(there) if !there.is_file() => {
+            format!("{} is a pipe, a socket or a device; name a file", path.display())
+        }
+        _ => return Ok(()),
+    };
+    Err(Fault::Unwritable(text))
 }
 
 /// Refuses `#` signs in the name of a command's only file: they represent the number of a frame elsewhere.
@@ -77,12 +82,15 @@ pub fn check_name(path: &Path) -> Result<(), Fault> {
     }
 }
 
-/// Refuses to replace one of the files that the scene or groom `main` consists of.
-pub fn keep_inputs(
+/// Checks all files that a run will write: none may be one of those that the scene or groom `main` consists of, and
+/// those that exist must be regular files.
+pub fn check_outputs(
     inputs: &Inputs,
     main: &Path,
     outputs: impl IntoIterator<Item = PathBuf>,
 ) -> Result<(), Fault> {
+    let outputs: Vec<PathBuf> = outputs.into_iter().collect();
+    outputs.iter().try_for_each(|path| check_target(path))?;
     Inputs::keep(inputs.paths(main), outputs).map_err(Fault::Usage)
 }
 

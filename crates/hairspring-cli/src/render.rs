@@ -101,7 +101,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     };
     let mut wanted: Vec<u32> = range.numbers().collect();
     let outputs = wanted.iter().map(|number| output::frame_path(&options.output, *number));
-    output::keep_inputs(&files, &options.input.path, outputs)?;
+    output::check_outputs(&files, &options.input.path, outputs)?;
     let mut size = options.view.size;
     let sink = match kind {
         Kind::Clip => {

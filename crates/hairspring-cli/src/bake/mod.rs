@@ -176,7 +176,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let all: Vec<u32> = samples.of(range).collect();
     let mut wanted = all.clone();
     let outputs = wanted.iter().map(|sample| output::frame_path(&pattern, *sample));
-    output::keep_inputs(&files, &options.input.path, outputs.chain([options.output.clone()]))?;
+    output::check_outputs(&files, &options.input.path, outputs.chain([options.output.clone()]))?;
     let mut manifest = None;
     if output::is_sequence(&pattern) {
         let origin = Origin::new("bake", &options.listed(), files);

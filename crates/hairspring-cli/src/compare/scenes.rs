@@ -95,7 +95,7 @@ pub fn run(options: &Options, console: Console) -> Result<(), Fault> {
     let b = side(options.b.as_ref().unwrap_or(path), "--set-b", &options.set_b, options)?;
     if let Some(picture) = &picture {
         for side in [&a, &b] {
-            output::keep_inputs(&side.files, &side.path, [picture.path.clone()])?;
+            output::check_outputs(&side.files, &side.path, [picture.path.clone()])?;
         }
     }
     print_notes(&a.notes, console);

@@ -137,19 +137,31 @@ fn frames_without_a_manifest_are_written_again() {
 }
 
 #[cfg(unix)]
+/// A pipe would be replaced by a file, and whoever reads from it would wait for ever. It is reported before the
+/// simulation, and no other frame is written.
 #[test]
-fn a_pipe_in_the_place_of_a_frame_is_replaced() {
+fn a_pipe_or_a_folder_in_the_place_of_a_frame_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let f = folder.path();
     write_scene(f, 40);
-    bake(f, &["--frames", "1-2"]);
+    bake(f, &["--frames", "1-3"]);
+    for number in [1, 2] {
+        std::fs::remove_file(f.join(format!("hair.0{number}.hair"))).unwrap();
+    }
     let whole = contents(f);
-    std::fs::remove_file(f.join("hair.02.hair")).unwrap();
-    let made = std::process::Command::new("mkfifo").arg(f.join("hair.02.hair")).status();
-    assert!(made.unwrap().success());
-    let stderr = resume(f, &[&BAKE[..], &["--frames", "1-2"]].concat());
-    assert!(stderr.contains("hair.02.hair is made again: it is not a regular file"), "{stderr}");
-    assert!(contents(f) == whole);
+    let wrong = f.join("hair.02.hair");
+    for (kind, make) in [("pipe", "mkfifo"), ("folder", "mkdir")] {
+        assert!(std::process::Command::new(make).arg(&wrong).status().unwrap().success());
+        for more in [&["--resume"][..], &[]] {
+            let stderr = fail(f, &[&BAKE[..], &["--frames", "1-3"], more].concat(), 5);
+            assert!(stderr.contains("hair.02.hair is a ") && stderr.contains(kind), "{stderr}");
+            assert!(!stderr.contains("simulating") && !f.join("hair.01.hair").exists(), "{stderr}");
+        }
+        let _ = std::fs::remove_file(&wrong).or_else(|_| std::fs::remove_dir(&wrong));
+    }
+    assert!(contents(f) == whole, "something has changed");
+    resume(f, &[&BAKE[..], &["--frames", "1-3"]].concat());
+    assert_eq!(contents(f).len(), whole.len() + 2);
 }
 
 #[test]
